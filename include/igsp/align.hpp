@@ -1,0 +1,20 @@
+#pragma once
+
+#include "igsp/features.hpp"
+#include "igsp/options.hpp"
+#include "igsp/point_cloud.hpp"
+#include "igsp/progress.hpp"
+#include "igsp/result.hpp"
+
+namespace igsp {
+
+/// The easy door: the rigid transformation that puts `source` onto `target`, without an initial guess, and whether to
+/// believe it. Points in one common unit. Throws InvalidArgument (empty cloud, non-finite point, option out of range)
+/// and Cancelled; a pair that cannot be registered is a Result that says so.
+Result align(PointView source, PointView target, const Options& options = {}, const ProgressCallback& progress = {});
+
+/// The staged door: both feature sets must share one voxel size and the feature options.
+Result align(const Features& source, const Features& target, const Options& options = {},
+             const ProgressCallback& progress = {});
+
+}  // namespace igsp

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "igsp/options.hpp"
+#include "igsp/point_cloud.hpp"
+#include "igsp/progress.hpp"
+
+namespace igsp {
+
+/// Binary Shape Context: 435 bits (147 occupancy, 3 planes x 48 depth, 3 planes x 48 density), padded to 448.
+inline constexpr int bsc_bits = 435;
+inline constexpr int bsc_words = 7;
+using Descriptor = std::array<std::uint64_t, bsc_words>;
+
+/// What the method knows of one cloud. Coordinates are relative to `origin` (world = local + origin), so that clouds in
+/// survey coordinates lose nothing.
+struct Features {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  double voxel_size = 0.0;
+  Points points;                          ///< voxel centroids, local
+  std::vector<float> curvature;           ///< per point: surface variation, [0, 1/3]
+  Points normals;                         ///< per point: unit, sign arbitrary
+  std::vector<std::uint32_t> keypoints;   ///< indices into `points`, by curvature descending
+  std::vector<Eigen::Matrix3d> frames;    ///< per keypoint: columns x, y, n of the local reference frame
+  std::vector<Descriptor> descriptors;    ///< per keypoint, in its frame
+};
+
+/// Everything that depends on one cloud alone. Uses options.scale.voxel_size, or the cloud's own scale when it is 0.
+/// Throws InvalidArgument (empty cloud, non-finite point, option out of range), Cancelled.
+Features extract_features(PointView cloud, const Options& options = {}, const ProgressCallback& progress = {});
+
+}  // namespace igsp

@@ -1,0 +1,8 @@
+#pragma once
+
+#include "igsp/align.hpp"
+#include "igsp/errors.hpp"
+#include "igsp/evaluation.hpp"
+#include "igsp/io.hpp"
+#include "igsp/simulation.hpp"
+#include "igsp/version.hpp"

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "igsp/point_cloud.hpp"
+
+namespace igsp {
+
+enum class FileFormat { ply_ascii, ply_binary_little_endian, ply_binary_big_endian, pcd_ascii, pcd_binary, pcd_binary_compressed, text };
+
+/// Reads the points of a file in chunks: PLY (ascii, both byte orders), PCD (ascii, binary, binary_compressed) and
+/// text (XYZ, TXT, CSV, PTS). Properties other than x, y, z are skipped. Non-finite points are dropped and counted.
+class PointReader {
+ public:
+  /// Opens the file and reads its header. Throws FileError (path and line or byte offset).
+  explicit PointReader(const std::filesystem::path& path);
+  ~PointReader();
+  PointReader(PointReader&&) noexcept;
+  PointReader& operator=(PointReader&&) noexcept;
+
+  /// The next chunk of finite points, empty at the end; valid until the next call. Throws FileError.
+  PointView next_chunk();
+
+  FileFormat format() const;
+  std::size_t dropped() const;  ///< non-finite points met so far
+  std::size_t declared_points() const;  ///< the header's count; 0 where the format has none
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+struct LoadedCloud {
+  Points points;
+  std::size_t dropped = 0;  ///< non-finite points left out
+  FileFormat format = FileFormat::ply_binary_little_endian;
+};
+
+/// The whole cloud. Throws FileError.
+LoadedCloud read_points(const std::filesystem::path& path);
+
+struct WriteOptions {
+  FileFormat format = FileFormat::ply_binary_little_endian;
+  bool single_precision = false;  ///< float instead of double coordinates
+};
+
+/// The format that a path's extension stands for (.ply, .pcd, .xyz, .txt, .csv, .pts). Throws FileError otherwise.
+FileFormat format_of(const std::filesystem::path& path);
+
+/// Writes to a temporary name beside `path`, then renames: nothing half-written is left. Throws FileError.
+void write_points(const std::filesystem::path& path, PointView points, const WriteOptions& options = {});
+
+/// 4x4 row-major text, as in `T.txt`. Throws FileError (also if the matrix is not a rigid motion to 1e-3).
+Transformation read_transformation(const std::filesystem::path& path);
+void write_transformation(const std::filesystem::path& path, const Transformation& transformation);
+
+}  // namespace igsp

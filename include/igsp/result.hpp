@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "igsp/options.hpp"
+#include "igsp/point_cloud.hpp"
+
+namespace igsp {
+
+/// One pass of the loop (the paper's Algorithm 1).
+struct IterationRecord {
+  int k = 0;
+  double w_fd = 1.0;  ///< Eq. 7
+  double w_ed = 0.0;
+  double t_cd = 0.0;                ///< mismatch threshold, Eq. 11 [bits]
+  std::size_t candidate_edges = 0;  ///< pairs with CD < T_cd
+  std::size_t matches = 0;          ///< |M|
+  double energy = 0.0;              ///< Eq. 1 [bits]
+  double rotation_step_rad = 0.0;
+  double translation_step = 0.0;  ///< displacement of the source keypoints' centroid [units of the cloud]
+  double seconds = 0.0;
+  Transformation target_from_source = Transformation::Identity();  ///< after this iteration
+};
+
+/// Why the loop ended.
+enum class Termination {
+  converged,
+  max_iterations,
+  too_few_keypoints,
+  too_few_matches,     ///< fewer than 3 correspondences
+  degenerate_matches,  ///< the correspondences lie on a line
+};
+std::string_view to_string(Termination termination);
+
+struct CloudSummary {
+  std::size_t points = 0;           ///< as given
+  std::size_t voxels = 0;           ///< after the voxel filter
+  std::size_t keypoints = 0;
+};
+
+/// What `align` answers. Not being able to register is an answer, never an exception.
+struct Result {
+  bool registered = false;  ///< the verdict
+  std::string reason;       ///< one sentence with the evidence for the verdict
+  Termination termination = Termination::converged;
+  Transformation target_from_source = Transformation::Identity();  ///< best estimate; meaningless unless `has_estimate`
+  bool has_estimate = false;                                       ///< false: there is no transformation to look at
+  double overlap_source = 0.0;  ///< share of the source's voxels with the target's surface at the pose, [0, 1]
+  double overlap_target = 0.0;  ///< the same for the target
+  double rmse = 0.0;            ///< point-to-plane RMS over the overlap [units of the cloud]
+  double voxel_size = 0.0;      ///< [units of the cloud]
+  CloudSummary source;
+  CloudSummary target;
+  std::vector<IterationRecord> iterations;
+  std::vector<std::pair<std::string, double>> timings_s;  ///< per stage, wall seconds, in order
+  Options options;                                        ///< as used
+
+  double overlap() const { return overlap_source < overlap_target ? overlap_source : overlap_target; }
+};
+
+}  // namespace igsp
