@@ -1,0 +1,44 @@
+# The short way in: every target sets up what is missing, then calls CMake with a preset of CMakePresets.json.
+PREFIX ?= /usr/local
+jobs := $(shell nproc)
+igsp := build/release/bin/igsp
+demo := build/demo
+
+.PHONY: all build setup demo test bench asan tsan fuzz format install clean
+
+all: build
+
+setup:
+	@scripts/setup.sh
+
+build: setup
+	cmake --preset release
+	cmake --build --preset release
+
+demo: build
+	$(igsp) simulate park --out $(demo)
+	$(igsp) align $(demo)/station_1.ply $(demo)/station_0.ply --transform $(demo)/estimate.txt
+	$(igsp) evaluate --transform $(demo)/estimate.txt --truth $(demo)/station_1_to_0.txt --source $(demo)/station_1.ply
+
+test: build
+	ctest --preset release -j $(jobs)
+
+asan tsan: setup
+	cmake --preset $@
+	cmake --build --preset $@
+	ctest --preset $@ -j $(jobs)
+
+bench: setup
+	cmake --preset release -DIGSP_BUILD_BENCHMARKS=ON
+	cmake --build --preset release
+	set -e; for benchmark in build/release/bin/*_benchmark; do $$benchmark; done
+
+format:
+	@scripts/setup.sh clang-format
+	git ls-files '*.hpp' '*.cpp' | xargs clang-format -i
+
+install: build
+	cmake --install build/release --prefix $(PREFIX)
+
+clean:
+	rm -rf build
