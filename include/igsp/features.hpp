@@ -1,7 +1,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "igsp/options.hpp"
@@ -26,6 +29,8 @@ struct Features {
   std::vector<std::uint32_t> keypoints;   ///< indices into `points`, by curvature descending
   std::vector<Eigen::Matrix3d> frames;    ///< per keypoint: columns x, y, n of the local reference frame
   std::vector<Descriptor> descriptors;    ///< per keypoint, in its frame
+  std::size_t cloud_points = 0;           ///< of the cloud as given
+  std::vector<std::pair<std::string, double>> timings_s;  ///< per stage, wall seconds, in order
 };
 
 /// Everything that depends on one cloud alone. Uses options.scale.voxel_size, or the cloud's own scale when it is 0.

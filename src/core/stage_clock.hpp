@@ -1,0 +1,48 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "igsp/errors.hpp"
+#include "igsp/progress.hpp"
+
+namespace igsp {
+
+using StageTimings = std::vector<std::pair<std::string, double>>;
+
+/// Times the stages of a run, reports them to the caller's progress callback and carries its wish to stop: every
+/// method throws Cancelled when the callback answers false.
+class StageClock {
+ public:
+  explicit StageClock(const ProgressCallback& progress) : progress_(progress) {}
+
+  void start(const char* stage) {
+    stop();
+    stage_ = stage;
+    begin_ = Clock::now();
+    report(0.0);
+  }
+  void report(double fraction) const {
+    if (progress_ && !progress_({stage_, fraction})) throw Cancelled();
+  }
+  void finish() { stop(); }
+  const StageTimings& timings() const { return timings_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void stop() {
+    if (stage_.empty()) return;
+    report(1.0);
+    timings_.emplace_back(stage_, std::chrono::duration<double>(Clock::now() - begin_).count());
+    stage_.clear();
+  }
+
+  const ProgressCallback& progress_;
+  std::string stage_;
+  Clock::time_point begin_;
+  StageTimings timings_;
+};
+
+}  // namespace igsp

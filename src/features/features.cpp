@@ -1,0 +1,61 @@
+#include "igsp/features.hpp"
+
+#include "core/parallel.hpp"
+#include "core/stage_clock.hpp"
+#include "features/bsc.hpp"
+#include "features/keypoints.hpp"
+#include "features/reference_frame.hpp"
+#include "spatial/scale.hpp"
+#include "spatial/voxel_grid.hpp"
+
+namespace igsp {
+namespace {
+
+void describe_keypoints(const PointGrid& grid, const Options& options, Features& features) {
+  const double radius = options.descriptor.radius * features.voxel_size;
+  features.frames.resize(features.keypoints.size());
+  features.descriptors.resize(features.keypoints.size());
+  parallel_blocks(features.keypoints.size(), options.threads, 32, [&](std::size_t begin, std::size_t end) {
+    Support support;
+    for (std::size_t i = begin; i < end; ++i) {
+      gather_support(grid, features.points[features.keypoints[i]], radius, support);
+      features.frames[i] = options.degrees_of_freedom == 4 ? levelled_reference_frame(support, radius)
+                                                           : reference_frame(support, radius);
+      features.descriptors[i] = binary_shape_context(support, features.frames[i], radius);
+    }
+  });
+}
+
+}  // namespace
+
+Features extract_features(PointView cloud, const Options& options, const ProgressCallback& progress) {
+  validate(options);
+  StageClock clock(progress);
+  Features features;
+  features.cloud_points = cloud.size();
+  clock.start("voxel grid");
+  const Bounds bounds = bounds_of(cloud, "cloud");
+  features.voxel_size = choose_voxel_size(cloud, cloud, options.scale);
+  features.origin = centre_of(bounds);
+  // Voxel boundaries start at the corner, which moves exactly with the cloud.
+  features.points = voxel_centroids(cloud, bounds.min, features.voxel_size);
+  const Eigen::Vector3d to_centre = 0.5 * (bounds.max - bounds.min);
+  for (Eigen::Vector3d& point : features.points) point -= to_centre;
+
+  clock.start("keypoints");
+  const double pca_radius = options.keypoints.pca_radius * features.voxel_size;
+  const PointGrid grid(features.points, 0.5 * pca_radius);
+  const LocalPca pca = local_pca(grid, pca_radius, options.threads);
+  features.curvature = pca.curvature;
+  features.normals.resize(features.points.size());
+  for (std::size_t i = 0; i < features.points.size(); ++i) features.normals[i] = pca.normals[i].cast<double>();
+  features.keypoints = detect_keypoints(features.points, grid, pca, features.voxel_size, options.keypoints);
+
+  clock.start("descriptors");
+  describe_keypoints(grid, options, features);
+  clock.finish();
+  features.timings_s = clock.timings();
+  return features;
+}
+
+}  // namespace igsp

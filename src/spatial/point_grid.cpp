@@ -1,0 +1,74 @@
+#include "spatial/point_grid.hpp"
+
+#include <cmath>
+
+namespace igsp {
+namespace {
+
+constexpr double max_cells = 4e6;  // 16 MB of cell starts; sparse clouds get larger cells instead of more memory
+
+}  // namespace
+
+PointGrid::PointGrid(PointView points, double wanted_cell_size) : index(points.size()) {
+  Eigen::Vector3d min = Eigen::Vector3d::Zero(), max = Eigen::Vector3d::Zero();
+  if (!points.empty()) min = max = points[0];
+  for (const Eigen::Vector3d& point : points) {
+    min = min.cwiseMin(point);
+    max = max.cwiseMax(point);
+  }
+  const Eigen::Vector3d extent = max - min;
+  double size = wanted_cell_size;
+  while (((extent / size).array().floor() + 1).prod() > max_cells) size *= 1.26;
+  cell_size = static_cast<float>(size);
+  origin = min.cast<float>();
+  for (int axis = 0; axis < 3; ++axis) cells[axis] = static_cast<int>(extent[axis] / size) + 1;
+
+  start.assign(cell_number(0, 0, cells[2]) + 1, 0);
+  std::vector<std::uint32_t> cell(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto c = cell_of(points[i].cast<float>());
+    cell[i] = static_cast<std::uint32_t>(cell_number(c[0], c[1], c[2]));
+    ++start[cell[i] + 1];
+  }
+  for (std::size_t c = 1; c < start.size(); ++c) start[c] += start[c - 1];
+
+  std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
+  x.resize(points.size());
+  y.resize(points.size());
+  z.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t position = next[cell[i]]++;
+    index[position] = static_cast<std::uint32_t>(i);
+    x[position] = static_cast<float>(points[i].x());
+    y[position] = static_cast<float>(points[i].y());
+    z[position] = static_cast<float>(points[i].z());
+  }
+}
+
+std::array<int, 3> PointGrid::cell_of(const Eigen::Vector3f& point) const {
+  std::array<int, 3> cell;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float c = std::floor((point[axis] - origin[axis]) / cell_size);
+    cell[axis] = static_cast<int>(std::clamp(c, 0.0f, static_cast<float>(cells[axis] - 1)));
+  }
+  return cell;
+}
+
+std::int64_t PointGrid::nearest(const Eigen::Vector3f& centre, float radius) const {
+  float best = radius * radius;
+  std::int64_t nearest = -1;
+  visit_runs(centre, radius, [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const float dx = x[i] - centre.x(), dy = y[i] - centre.y(), dz = z[i] - centre.z();
+      const float squared = dx * dx + dy * dy + dz * dz;
+      // Ties go to the lower original index, so that the answer does not depend on the cells.
+      if (squared < best || (squared == best && (nearest < 0 || index[i] < nearest))) {
+        best = squared;
+        nearest = index[i];
+      }
+    }
+  });
+  return nearest;
+}
+
+}  // namespace igsp

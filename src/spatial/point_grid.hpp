@@ -1,0 +1,72 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "igsp/point_cloud.hpp"
+
+namespace igsp {
+
+/// Points sorted into cubic cells, rows of cells along x contiguous in memory, coordinates as separate float arrays.
+/// Made for the many spheres of one or two radii that keypoints and descriptors need: a sphere is a few dozen
+/// contiguous runs, which compilers vectorise over. Points must be local (centred) coordinates.
+class PointGrid {
+ public:
+  PointGrid(PointView points, double cell_size);
+
+  std::size_t size() const { return index.size(); }
+  std::array<int, 3> cell_of(const Eigen::Vector3f& point) const;
+  std::size_t cell_number(int cx, int cy, int cz) const {
+    return (static_cast<std::size_t>(cz) * cells[1] + cy) * cells[0] + cx;
+  }
+
+  /// visit(begin, end) for every run of sorted points that may lie in the box centre +- radius.
+  template <typename Visit>
+  void visit_runs(const Eigen::Vector3f& centre, float radius, const Visit& visit) const {
+    const auto lo = cell_of(centre - Eigen::Vector3f::Constant(radius));
+    const auto hi = cell_of(centre + Eigen::Vector3f::Constant(radius));
+    for (int cz = lo[2]; cz <= hi[2]; ++cz) {
+      const float dz = distance_to_cell(centre.z() - origin.z(), cz);
+      for (int cy = lo[1]; cy <= hi[1]; ++cy) {
+        const float dy = distance_to_cell(centre.y() - origin.y(), cy);
+        if (dz * dz + dy * dy > radius * radius) continue;
+        const std::uint32_t begin = start[cell_number(lo[0], cy, cz)];
+        const std::uint32_t end = start[cell_number(hi[0], cy, cz) + 1];
+        if (begin != end) visit(begin, end);
+      }
+    }
+  }
+
+  /// visit(position in the sorted arrays, squared distance) for every point within `radius` of `centre`.
+  template <typename Visit>
+  void visit_sphere(const Eigen::Vector3f& centre, float radius, const Visit& visit) const {
+    const float limit = radius * radius;
+    visit_runs(centre, radius, [&](std::uint32_t begin, std::uint32_t end) {
+      for (std::uint32_t i = begin; i < end; ++i) {
+        const float dx = x[i] - centre.x(), dy = y[i] - centre.y(), dz = z[i] - centre.z();
+        const float squared = dx * dx + dy * dy + dz * dz;
+        if (squared <= limit) visit(i, squared);
+      }
+    });
+  }
+
+  /// Nearest point within `radius`: its index in the original order, or -1.
+  std::int64_t nearest(const Eigen::Vector3f& centre, float radius) const;
+
+  Eigen::Vector3f origin;  ///< corner of cell (0, 0, 0)
+  float cell_size;
+  std::array<int, 3> cells;
+  std::vector<std::uint32_t> start;  ///< first sorted position of every cell, one more at the end
+  std::vector<std::uint32_t> index;  ///< original index of every sorted position
+  std::vector<float> x, y, z;
+
+ private:
+  float distance_to_cell(float coordinate, int cell) const {
+    const float low = cell * cell_size;
+    return std::max({low - coordinate, coordinate - low - cell_size, 0.0f});
+  }
+};
+
+}  // namespace igsp

@@ -1,0 +1,99 @@
+#include "spatial/voxel_grid.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "igsp/errors.hpp"
+
+namespace igsp {
+namespace {
+
+constexpr int bits_per_axis = 21;
+constexpr double max_cell = 1 << (bits_per_axis - 1);
+
+std::uint64_t key_of(const Eigen::Vector3d& cell) {
+  const auto biased = [](double c) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(c + max_cell)); };
+  return biased(cell.z()) << (2 * bits_per_axis) | biased(cell.y()) << bits_per_axis | biased(cell.x());
+}
+
+std::uint64_t scatter(std::uint64_t key) {
+  key *= 0x9E3779B97F4A7C15ull;  // Fibonacci hashing: the golden ratio spreads neighbouring cells
+  return key ^ (key >> 32);
+}
+
+}  // namespace
+
+VoxelFilter::VoxelFilter(const Eigen::Vector3d& origin, double voxel_size)
+    : origin_(origin), voxel_size_(voxel_size), table_(1 << 12, 0) {
+  if (!(voxel_size > 0) || !std::isfinite(voxel_size)) {
+    throw InvalidArgument(fmt::format("voxel_size is {}; it must be positive and finite", voxel_size));
+  }
+}
+
+std::size_t VoxelFilter::slot_of(std::uint64_t key) const {
+  const std::size_t mask = table_.size() - 1;
+  std::size_t slot = scatter(key) & mask;
+  while (table_[slot] != 0 && voxels_[table_[slot] - 1].key != key) slot = (slot + 1) & mask;
+  return slot;
+}
+
+void VoxelFilter::grow() {
+  table_.assign(2 * table_.size(), 0);
+  for (std::size_t i = 0; i < voxels_.size(); ++i) {
+    table_[slot_of(voxels_[i].key)] = static_cast<std::uint32_t>(i + 1);
+  }
+}
+
+void VoxelFilter::add(PointView chunk) {
+  const double inverse = 1.0 / voxel_size_;
+  for (const Eigen::Vector3d& point : chunk) {
+    const Eigen::Vector3d local = point - origin_;
+    const Eigen::Vector3d cell = (local * inverse).array().floor();
+    if (!(cell.array().abs().maxCoeff() < max_cell)) {
+      throw InvalidArgument(
+          fmt::format("voxel_size is {}: too small for a cloud of this extent (a point lies {} away from the origin of "
+                      "the grid; at most 2^20 voxels are possible)",
+                      voxel_size_, local.norm()));
+    }
+    const std::uint64_t key = key_of(cell);
+    const std::size_t slot = slot_of(key);
+    if (table_[slot] != 0) {
+      Voxel& voxel = voxels_[table_[slot] - 1];
+      voxel.sum += local;
+      ++voxel.count;
+    } else {
+      voxels_.push_back({key, 1, local});
+      table_[slot] = static_cast<std::uint32_t>(voxels_.size());
+      if (2 * voxels_.size() > table_.size()) grow();
+    }
+  }
+}
+
+Points VoxelFilter::centroids() const {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order(voxels_.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = {voxels_[i].key, static_cast<std::uint32_t>(i)};
+  std::sort(order.begin(), order.end());
+  Points centroids(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Voxel& voxel = voxels_[order[i].second];
+    centroids[i] = voxel.sum / voxel.count;
+  }
+  return centroids;
+}
+
+Points voxel_centroids(PointView points, const Eigen::Vector3d& origin, double voxel_size) {
+  VoxelFilter filter(origin, voxel_size);
+  filter.add(points);
+  return filter.centroids();
+}
+
+Points voxel_centroids(const ChunkSource& chunks, const Eigen::Vector3d& origin, double voxel_size) {
+  VoxelFilter filter(origin, voxel_size);
+  for (PointView chunk = chunks(); !chunk.empty(); chunk = chunks()) filter.add(chunk);
+  return filter.centroids();
+}
+
+}  // namespace igsp
