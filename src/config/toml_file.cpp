@@ -1,0 +1,135 @@
+#include "config/toml_file.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <vector>
+
+#include "config/nearest.hpp"
+#include "config/option_list.hpp"
+#include "igsp/errors.hpp"
+
+namespace igsp {
+namespace {
+
+constexpr std::string_view preset_key = "preset";
+
+std::string value_text(const Option& option, const Options& options) {
+  const std::string text = to_string(option.get(options));
+  return option.kind == OptionKind::choice ? '"' + text + '"' : text;
+}
+
+// The text an error starts with: where in the file the value stands.
+std::string location(std::string_view name, const toml::source_region& source) {
+  return fmt::format("{}:{}:{}: ", name, source.begin.line, source.begin.column);
+}
+
+[[noreturn]] void fail_unknown(std::string_view key, const std::string& where) {
+  std::vector<std::string_view> known{preset_key};
+  for (const Option& option : option_list()) {
+    known.push_back(option.key);
+    if (!option.section.empty()) known.push_back(option.section);
+  }
+  throw InvalidArgument(fmt::format("{}unknown option \"{}\"; did you mean \"{}\"?", where, key, nearest(key, known)));
+}
+
+OptionValue value_of(const toml::node& node, const Option& option, const std::string& where) {
+  if (const auto flag = node.value_exact<bool>()) return *flag;
+  if (const auto real = node.value_exact<double>()) return *real;
+  if (const auto name = node.value_exact<std::string>()) return *name;
+  if (const auto integer = node.value_exact<std::int64_t>()) {
+    if (option.kind == OptionKind::real) return static_cast<double>(*integer);
+    if (*integer == static_cast<int>(*integer)) return static_cast<int>(*integer);
+    throw InvalidArgument(
+        fmt::format("{}option {} is {}; it must be {}", where, option.key, *integer, admissible_values(option)));
+  }
+  throw InvalidArgument(
+      fmt::format("{}option {} takes a single value ({})", where, option.key, admissible_values(option)));
+}
+
+void assign_node(Options& options, const std::string& key, const toml::node& node, const std::string& where) {
+  const auto all = option_list();
+  const auto option = std::ranges::find(all, std::string_view(key), &Option::key);
+  if (option == all.end()) fail_unknown(key, where);
+  const OptionValue value = value_of(node, *option, where);
+  try {
+    assign(options, *option, value);
+  } catch (const InvalidArgument& error) {
+    throw InvalidArgument(where + error.what());
+  }
+}
+
+void assign_table(Options& options, const toml::table& table, const std::string& section, std::string_view name) {
+  for (const auto& [short_key, node] : table) {
+    const std::string key = section + std::string(short_key.str());
+    if (key == preset_key) continue;
+    const bool is_section = node.is_table() && std::ranges::any_of(option_list(), [&](const Option& option) {
+                              return option.section == key;
+                            });
+    if (is_section) {
+      assign_table(options, *node.as_table(), key + ".", name);
+    } else {
+      assign_node(options, key, node, location(name, short_key.source()));
+    }
+  }
+}
+
+Options base_options(const toml::table& table, std::string_view name) {
+  const toml::node* node = table.get(preset_key);
+  if (node == nullptr) return preset("default");
+  const auto preset_name = node->value_exact<std::string>();
+  const std::string where = location(name, node->source());
+  if (!preset_name) throw InvalidArgument(where + "preset takes a name");
+  try {
+    return preset(*preset_name);
+  } catch (const InvalidArgument& error) {
+    throw InvalidArgument(where + error.what());
+  }
+}
+
+}  // namespace
+
+std::string options_to_toml(const Options& options) {
+  std::string text;
+  std::string_view section;
+  for (const Option& option : option_list()) {
+    if (option.section != section) {
+      section = option.section;
+      text += fmt::format("\n[{}]\n", section);
+    }
+    const std::string range = option.kind == OptionKind::boolean ? "" : "; " + admissible_values(option);
+    const std::string unit = option.unit.empty() ? "" : fmt::format(" [{}]", option.unit);
+    text += fmt::format("{:<32}# {}{}{}\n", fmt::format("{} = {}", name_in_section(option), value_text(option, options)),
+                        option.help, unit, range);
+  }
+  return text;
+}
+
+Options options_from_toml(std::string_view text, std::string_view name) {
+  toml::table table;
+  try {
+    table = toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    throw FileError(location(name, error.source()) + std::string(error.description()));
+  }
+  Options options = base_options(table, name);
+  assign_table(options, table, "", name);
+  return options;
+}
+
+Options read_options(const std::filesystem::path& path) {
+  if (std::filesystem::is_directory(path)) throw FileError(path.string() + ": is a directory");
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (file) text << file.rdbuf();
+  if (!file) throw FileError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
+  return options_from_toml(text.str(), path.string());
+}
+
+}  // namespace igsp

@@ -1,0 +1,105 @@
+#include "config/toml_file.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "config/option_list.hpp"
+#include "igsp/errors.hpp"
+
+namespace igsp {
+namespace {
+
+void expect_same(const Options& a, const Options& b) {
+  for (const Option& option : option_list()) EXPECT_EQ(option.get(a), option.get(b)) << option.key;
+}
+
+template <typename Error>
+std::string message_of(std::string_view toml) {
+  try {
+    options_from_toml(toml, "igsp.toml");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Toml, PresetsReadBackAsTheyWereWritten) {
+  expect_same(options_from_toml(options_to_toml(preset("paper")), "text"), preset("paper"));
+  expect_same(options_from_toml(options_to_toml(preset("default")), "text"), preset("default"));
+}
+
+TEST(Toml, AnyRealValuesReadBackExactly) {
+  rc::check([] {
+    Options options;
+    for (const Option& option : option_list()) {
+      if (option.kind != OptionKind::real) continue;
+      const double high = std::min(option.range.high, 1e9);
+      const double share = *rc::gen::inRange(1, 1000000) / 1000001.0;
+      option.set(options, option.range.low + (high - option.range.low) * share * share * share);
+    }
+    validate(options);
+    const Options back = options_from_toml(options_to_toml(options), "text");
+    for (const Option& option : option_list()) RC_ASSERT(option.get(options) == option.get(back));
+  });
+}
+
+TEST(Toml, WrittenTextNamesEveryOptionWithItsHelpAndRange) {
+  const std::string text = options_to_toml(Options{});
+  for (const Option& option : option_list()) {
+    EXPECT_NE(text.find(std::string(option.help)), std::string::npos) << option.key;
+    EXPECT_NE(text.find(std::string(name_in_section(option)) + " = "), std::string::npos) << option.key;
+  }
+  EXPECT_NE(text.find("[keypoints]"), std::string::npos);
+  EXPECT_NE(text.find("in (0, 1]"), std::string::npos);
+}
+
+TEST(Toml, EmptyTextIsTheDefault) { expect_same(options_from_toml("", "text"), Options{}); }
+
+TEST(Toml, WhatIsLeftOutComesFromTheNamedPreset) {
+  const Options options = options_from_toml("preset = \"paper\"\n[descriptor]\nradius = 8\n", "text");
+  Options expected = preset("paper");
+  expected.descriptor.radius = 8.0;
+  expect_same(options, expected);
+}
+
+TEST(Toml, DottedKeysAreSections) {
+  EXPECT_EQ(options_from_toml("keypoints.pca_radius = 9\n", "text").keypoints.pca_radius, 9.0);
+}
+
+TEST(Toml, UnknownKeyNamesLineAndNearest) {
+  EXPECT_EQ(message_of<InvalidArgument>("threads = 1\n\n[keypoints]\npca_raduis = 6.0\n"),
+            "igsp.toml:4:1: unknown option \"keypoints.pca_raduis\"; did you mean \"keypoints.pca_radius\"?");
+  EXPECT_EQ(message_of<InvalidArgument>("[keypoint]\npca_radius = 6.0\n"),
+            "igsp.toml:1:2: unknown option \"keypoint\"; did you mean \"keypoints\"?");
+}
+
+TEST(Toml, ValueOutOfRangeNamesLineValueAndRange) {
+  EXPECT_EQ(message_of<InvalidArgument>("[keypoints]\npca_radius = -1\n"),
+            "igsp.toml:2:1: option keypoints.pca_radius (--pca-radius) is -1.0; it must be in (0, 100] [voxels]");
+  EXPECT_EQ(message_of<InvalidArgument>("threads = 99999999999\n"),
+            "igsp.toml:1:1: option threads is 99999999999; it must be in [0, 1024]");
+}
+
+TEST(Toml, WrongKindOfValueIsAnError) {
+  for (const char* text : {"threads = 1.5", "threads = \"1\"", "search = 1", "search = \"drect\"", "threads = [1]",
+                           "keypoints = 3", "preset = 1", "preset = \"papr\"", "refinement.enabled = 1",
+                           "keypoints.pca_radius = nan", "threads = 2020-01-01", "[search]\na = 1"}) {
+    EXPECT_NE(message_of<InvalidArgument>(text).find("igsp.toml:1:"), std::string::npos) << text;
+  }
+}
+
+TEST(Toml, WhatIsNotTomlIsAFileErrorWithItsLine) {
+  EXPECT_NE(message_of<FileError>("threads = 1\nsearch =\n").find("igsp.toml:2:"), std::string::npos);
+  EXPECT_NE(message_of<FileError>("threads = 1\nthreads = 2\n").find("igsp.toml:2:"), std::string::npos);
+}
+
+TEST(Toml, UnreadableFileIsAFileErrorWithItsPath) {
+  EXPECT_THROW(read_options("/nowhere/igsp.toml"), FileError);
+  EXPECT_THROW(read_options("/"), FileError);
+}
+
+}  // namespace
+}  // namespace igsp
