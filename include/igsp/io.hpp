@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "igsp/point_cloud.hpp"
@@ -12,11 +13,16 @@ namespace igsp {
 enum class FileFormat { ply_ascii, ply_binary_little_endian, ply_binary_big_endian, pcd_ascii, pcd_binary, pcd_binary_compressed, text };
 
 /// Reads the points of a file in chunks: PLY (ascii, both byte orders), PCD (ascii, binary, binary_compressed) and
-/// text (XYZ, TXT, CSV, PTS). Properties other than x, y, z are skipped. Non-finite points are dropped and counted.
+/// text (XYZ, TXT, CSV, PTS). The content decides between them, for text the extension. Properties other than x, y, z
+/// are skipped. Non-finite points are dropped and counted. A file that declares 0 points is an empty cloud, no error.
+/// Memory is bounded by a chunk whatever the file's size, save for PCD binary_compressed, whose body (at most 4 GiB) can
+/// only be decompressed whole.
 class PointReader {
  public:
+  static constexpr std::size_t default_chunk = 65536;
+
   /// Opens the file and reads its header. Throws FileError (path and line or byte offset).
-  explicit PointReader(const std::filesystem::path& path);
+  explicit PointReader(const std::filesystem::path& path, std::size_t points_per_chunk = default_chunk);
   ~PointReader();
   PointReader(PointReader&&) noexcept;
   PointReader& operator=(PointReader&&) noexcept;
@@ -43,17 +49,20 @@ struct LoadedCloud {
 LoadedCloud read_points(const std::filesystem::path& path);
 
 struct WriteOptions {
-  FileFormat format = FileFormat::ply_binary_little_endian;
-  bool single_precision = false;  ///< float instead of double coordinates
+  std::optional<FileFormat> format;  ///< by default the one that the extension stands for
+  bool single_precision = false;     ///< coordinates rounded to float
 };
 
-/// The format that a path's extension stands for (.ply, .pcd, .xyz, .txt, .csv, .pts). Throws FileError otherwise.
+/// The format that a path's extension stands for: .ply and .pcd binary, .xyz, .txt, .csv and .pts text. Throws
+/// FileError otherwise.
 FileFormat format_of(const std::filesystem::path& path);
 
-/// Writes to a temporary name beside `path`, then renames: nothing half-written is left. Throws FileError.
+/// Writes to a temporary name beside `path`, then renames: nothing half-written is left. Every format reads back as
+/// exactly the same coordinates. Throws FileError, and InvalidArgument for a coordinate that is not finite (as a float).
 void write_points(const std::filesystem::path& path, PointView points, const WriteOptions& options = {});
 
-/// 4x4 row-major text, as in `T.txt`. Throws FileError (also if the matrix is not a rigid motion to 1e-3).
+/// 4x4 row-major text, as in `T.txt`: 16 numbers, or the 12 of its upper three rows, over any lines; # starts a comment.
+/// Throws FileError (also if the matrix is not a rigid motion to 1e-3). The numbers are taken as they are.
 Transformation read_transformation(const std::filesystem::path& path);
 void write_transformation(const std::filesystem::path& path, const Transformation& transformation);
 

@@ -1,0 +1,53 @@
+#include "io/file_format.hpp"
+
+#include "igsp/errors.hpp"
+
+namespace igsp {
+
+namespace io {
+
+FormatFamily family_of(FileFormat format) {
+  switch (format) {
+    case FileFormat::ply_ascii:
+    case FileFormat::ply_binary_little_endian:
+    case FileFormat::ply_binary_big_endian: return FormatFamily::ply;
+    case FileFormat::pcd_ascii:
+    case FileFormat::pcd_binary:
+    case FileFormat::pcd_binary_compressed: return FormatFamily::pcd;
+    case FileFormat::text: return FormatFamily::text;
+  }
+  return FormatFamily::unknown;
+}
+
+std::string extension_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return extension;
+}
+
+FormatFamily family_of(const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
+  if (extension == ".ply") return FormatFamily::ply;
+  if (extension == ".pcd") return FormatFamily::pcd;
+  for (const auto text : {".xyz", ".txt", ".csv", ".pts"}) {
+    if (extension == text) return FormatFamily::text;
+  }
+  return FormatFamily::unknown;
+}
+
+}  // namespace io
+
+FileFormat format_of(const std::filesystem::path& path) {
+  switch (io::family_of(path)) {
+    case io::FormatFamily::ply: return FileFormat::ply_binary_little_endian;
+    case io::FormatFamily::pcd: return FileFormat::pcd_binary;
+    case io::FormatFamily::text: return FileFormat::text;
+    case io::FormatFamily::unknown: break;
+  }
+  throw FileError(path.string() +
+                  ": unknown kind of file; the extension must be one of .ply, .pcd, .xyz, .txt, .csv, .pts");
+}
+
+}  // namespace igsp

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "igsp/io.hpp"
+
+namespace igsp::io {
+
+enum class FormatFamily { ply, pcd, text, unknown };
+
+FormatFamily family_of(FileFormat format);
+
+/// The family that the extension stands for, in any letter case.
+FormatFamily family_of(const std::filesystem::path& path);
+
+/// The extension in lower case, with its dot.
+std::string extension_of(const std::filesystem::path& path);
+
+}  // namespace igsp::io

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "igsp/io.hpp"
+#include "io/input_file.hpp"
+#include "io/scalar_type.hpp"
+
+namespace igsp::io {
+
+struct PcdField {
+  std::string name;
+  std::uint64_t size = 4;
+  char type = 'F';
+  std::uint64_t count = 1;  ///< values of this field in one point
+};
+
+struct PcdHeader {
+  FileFormat format = FileFormat::pcd_ascii;
+  std::vector<PcdField> fields;
+  std::uint64_t points = 0;
+};
+
+/// Consumes everything up to and including the DATA line.
+PcdHeader read_pcd_header(InputFile& file);
+
+/// The scalar type of a field. Fails for a SIZE that its TYPE cannot have.
+ScalarType scalar_type_of(const InputFile& file, const PcdField& field);
+
+}  // namespace igsp::io

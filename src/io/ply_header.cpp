@@ -1,0 +1,89 @@
+#include "io/ply_header.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "io/header_lines.hpp"
+#include "io/number_text.hpp"
+
+namespace igsp::io {
+
+namespace {
+
+using Words = std::vector<std::string_view>;
+
+ScalarType parse_type(const InputFile& file, std::string_view name) {
+  static constexpr std::pair<std::string_view, ScalarType> types[] = {
+      {"char", ScalarType::int8},      {"int8", ScalarType::int8},      {"uchar", ScalarType::uint8},
+      {"uint8", ScalarType::uint8},    {"short", ScalarType::int16},    {"int16", ScalarType::int16},
+      {"ushort", ScalarType::uint16},  {"uint16", ScalarType::uint16},  {"int", ScalarType::int32},
+      {"int32", ScalarType::int32},    {"uint", ScalarType::uint32},    {"uint32", ScalarType::uint32},
+      {"float", ScalarType::float32},  {"float32", ScalarType::float32}, {"double", ScalarType::float64},
+      {"float64", ScalarType::float64}};
+  for (const auto& [known, type] : types) {
+    if (name == known) return type;
+  }
+  file.fail_at_line("unknown property type " + in_quotes(name));
+}
+
+FileFormat parse_format(const InputFile& file, const Words& words) {
+  static constexpr std::pair<std::string_view, FileFormat> formats[] = {
+      {"ascii", FileFormat::ply_ascii},
+      {"binary_little_endian", FileFormat::ply_binary_little_endian},
+      {"binary_big_endian", FileFormat::ply_binary_big_endian}};
+  if (words.size() == 3 && words[2] == "1.0") {
+    for (const auto& [name, format] : formats) {
+      if (words[1] == name) return format;
+    }
+  }
+  file.fail_at_line("not a PLY format: expected ascii, binary_little_endian or binary_big_endian and 1.0");
+}
+
+PlyElement parse_element(const InputFile& file, const Words& words) {
+  const auto count = words.size() == 3 ? parse_number<std::uint64_t>(words[2]) : std::nullopt;
+  if (!count) file.fail_at_line("expected 'element <name> <count>'");
+  return {std::string(words[1]), *count, {}};
+}
+
+PlyProperty parse_property(const InputFile& file, const Words& words) {
+  if (words.size() == 3) return {std::string(words[2]), parse_type(file, words[1]), std::nullopt};
+  if (words.size() != 5 || words[1] != "list") {
+    file.fail_at_line("expected 'property <type> <name>' or 'property list <type> <type> <name>'");
+  }
+  const ScalarType length = parse_type(file, words[2]);
+  if (length == ScalarType::float32 || length == ScalarType::float64) {
+    file.fail_at_line("the length of a list must have an integer type, not " + in_quotes(words[2]));
+  }
+  return {std::string(words[4]), parse_type(file, words[3]), length};
+}
+
+}  // namespace
+
+PlyHeader read_ply_header(InputFile& file) {
+  PlyHeader header;
+  bool format_known = false;
+  if (split_words(read_header_line(file)) != Words{"ply"}) file.fail_at_offset(0, "not a PLY file: no 'ply' line");
+  while (true) {
+    const Words words = split_words(read_header_line(file));
+    if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
+    if (words[0] == "end_header") break;
+    if (words[0] == "format") {
+      header.format = parse_format(file, words);
+      format_known = true;
+    } else if (words[0] == "element") {
+      header.elements.push_back(parse_element(file, words));
+    } else if (words[0] == "property") {
+      if (header.elements.empty()) file.fail_at_line("a property before any element");
+      header.elements.back().properties.push_back(parse_property(file, words));
+    } else {
+      file.fail_at_line("unknown header line " + in_quotes(words[0]));
+    }
+  }
+  if (!format_known) file.fail_at_line("the header ends without a 'format' line");
+  return header;
+}
+
+}  // namespace igsp::io

@@ -1,0 +1,21 @@
+#include <fmt/format.h>
+
+#include "io/point_writers.hpp"
+
+namespace igsp::io {
+
+void write_ply(AtomicFile& file, PointView points, const WriteJob& job) {
+  const bool ascii = job.format == FileFormat::ply_ascii;
+  const bool big = job.format == FileFormat::ply_binary_big_endian;
+  const char* type = job.single_precision ? "float" : "double";
+  file.write(fmt::format("ply\nformat {} 1.0\nelement vertex {}\n", ascii ? "ascii" : big ? "binary_big_endian" : "binary_little_endian",
+                         points.size()));
+  file.write(fmt::format("property {0} x\nproperty {0} y\nproperty {0} z\nend_header\n", type));
+  if (ascii) {
+    write_lines(file, points, job.single_precision, ' ');
+  } else {
+    write_records(file, points, job.single_precision, big ? std::endian::big : std::endian::little);
+  }
+}
+
+}  // namespace igsp::io

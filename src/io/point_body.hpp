@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <variant>
+
+#include "igsp/io.hpp"
+#include "io/binary_records.hpp"
+#include "io/input_file.hpp"
+#include "io/text_table.hpp"
+
+namespace igsp::io {
+
+/// A file whose header is read and whose points come next.
+struct PointBody {
+  FileFormat format = FileFormat::text;
+  std::uint64_t declared_points = 0;
+  std::variant<TextTable, FixedRecords, ListRecords, ColumnRecords> records;
+};
+
+PointBody open_ply(InputFile& file);
+PointBody open_pcd(InputFile& file);
+PointBody open_text(InputFile& file);
+
+}  // namespace igsp::io

@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <variant>
+
+#include "igsp/errors.hpp"
+#include "igsp/io.hpp"
+#include "io/chunk.hpp"
+#include "io/file_format.hpp"
+#include "io/point_body.hpp"
+
+namespace igsp {
+
+namespace {
+
+using io::FormatFamily;
+
+/// What the first bytes are: PCD has no magic of its own, so its first line that is no comment decides.
+FormatFamily family_of_content(io::InputFile& file) {
+  std::string_view start = file.peek(4096);
+  if (start.starts_with("ply\n") || start.starts_with("ply\r") || start.starts_with("ply ")) return FormatFamily::ply;
+  if (start.starts_with("# .PCD")) return FormatFamily::pcd;
+  while (start.starts_with('#')) start.remove_prefix(std::min(start.find('\n'), start.size() - 1) + 1);
+  for (const auto keyword : {"VERSION ", "FIELDS ", "COLUMNS "}) {
+    if (start.starts_with(keyword)) return FormatFamily::pcd;
+  }
+  return FormatFamily::unknown;
+}
+
+io::PointBody open_body(io::InputFile& file) {
+  const FormatFamily found = family_of_content(file);
+  if (found == FormatFamily::ply) return io::open_ply(file);
+  if (found == FormatFamily::pcd) return io::open_pcd(file);
+  switch (io::family_of(format_of(file.path()))) {
+    case FormatFamily::ply: file.fail_at_offset(0, "not a PLY file: it does not start with a line 'ply'");
+    case FormatFamily::pcd: file.fail_at_offset(0, "not a PCD file: it starts neither with '# .PCD' nor with VERSION");
+    default: return io::open_text(file);
+  }
+}
+
+}  // namespace
+
+struct PointReader::Implementation {
+  Implementation(const std::filesystem::path& path, std::size_t points_per_chunk) : file(path), body(open_body(file)) {
+    chunk.limit = points_per_chunk;
+  }
+
+  io::InputFile file;
+  io::PointBody body;
+  io::Chunk chunk;
+};
+
+PointReader::PointReader(const std::filesystem::path& path, std::size_t points_per_chunk) {
+  if (points_per_chunk == 0) throw InvalidArgument("points_per_chunk = 0 is not in [1, infinity)");
+  implementation_ = std::make_unique<Implementation>(path, points_per_chunk);
+}
+
+PointReader::~PointReader() = default;
+PointReader::PointReader(PointReader&&) noexcept = default;
+PointReader& PointReader::operator=(PointReader&&) noexcept = default;
+
+PointView PointReader::next_chunk() {
+  auto& [file, body, chunk] = *implementation_;
+  chunk.points.clear();
+  std::visit([&](auto& records) { records.fill(file, chunk); }, body.records);
+  return chunk.points;
+}
+
+FileFormat PointReader::format() const { return implementation_->body.format; }
+std::size_t PointReader::dropped() const { return implementation_->chunk.dropped; }
+std::size_t PointReader::declared_points() const { return implementation_->body.declared_points; }
+
+LoadedCloud read_points(const std::filesystem::path& path) {
+  PointReader reader(path);
+  LoadedCloud cloud;
+  cloud.format = reader.format();
+  cloud.points.reserve(reader.declared_points());
+  for (PointView chunk = reader.next_chunk(); !chunk.empty(); chunk = reader.next_chunk()) {
+    cloud.points.insert(cloud.points.end(), chunk.begin(), chunk.end());
+  }
+  cloud.dropped = reader.dropped();
+  return cloud;
+}
+
+}  // namespace igsp

@@ -1,0 +1,15 @@
+#include <fmt/format.h>
+
+#include "io/point_writers.hpp"
+
+namespace igsp::io {
+
+/// CSV begins with the names of its columns, PTS with the number of its points; the others are numbers only.
+void write_text(AtomicFile& file, PointView points, const WriteJob& job) {
+  const bool csv = job.extension == ".csv";
+  if (csv) file.write("x,y,z\n");
+  if (job.extension == ".pts") file.write(fmt::format("{}\n", points.size()));
+  write_lines(file, points, job.single_precision, csv ? ',' : ' ');
+}
+
+}  // namespace igsp::io
