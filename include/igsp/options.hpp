@@ -48,6 +48,17 @@ struct EnergyOptions {
   double min_threshold = 5.0;  ///< floor of T_cd [bits]
 };
 
+/// Search::hypotheses only.
+struct HypothesisOptions {
+  int candidates_per_keypoint = 3;     ///< best by feature distance, from both sides
+  int max_candidates = 2500;           ///< those that stand out most
+  double length_tolerance = 2.0;       ///< of two candidates' lengths to agree [voxels]
+  double min_length = 4.0;             ///< shorter lengths say nothing [voxels]
+  double max_frame_angle_rad = 0.785;  ///< between the frame rotations of two candidates that agree
+  int max_proposed = 48;               ///< hypotheses screened by re-matching in a common frame
+  int max_refined = 6;                 ///< hypotheses refined and ranked
+};
+
 struct ConvergenceOptions {
   int max_iterations = 50;
   double rotation_tolerance_rad = 1e-4;  ///< stop when the rotation step ...
@@ -66,6 +77,7 @@ struct Options {
   KeypointOptions keypoints;
   DescriptorOptions descriptor;
   EnergyOptions energy;
+  HypothesisOptions hypotheses;
   ConvergenceOptions convergence;
   RefinementOptions refinement;
 };

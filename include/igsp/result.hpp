@@ -45,6 +45,7 @@ struct CloudSummary {
 /// What `align` answers. Not being able to register is an answer, never an exception.
 struct Result {
   bool registered = false;  ///< the verdict
+  double confidence = 0.0;  ///< that target_from_source is right, [0, 1]
   std::string reason;       ///< one sentence with the evidence for the verdict
   Termination termination = Termination::converged;
   Transformation target_from_source = Transformation::Identity();  ///< best estimate; meaningless unless `has_estimate`

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "estimation/rigid_fit.hpp"
+
+namespace igsp {
+
+/// Weight of a residual under the Geman-McClure loss, 1 at 0; 0 beyond three scales, where nothing is left to say.
+double geman_mcclure_weight(double residual, double scale);
+
+/// Rigid fit that outliers do not bend: iteratively reweighted least squares with the Geman-McClure loss, one pass per
+/// entry of `scales` (coarse to fine, units of the cloud), from `initial`. Empty when a pass leaves too few pairs.
+std::optional<Transformation> robust_fit(std::span<const PointPair> pairs, const Transformation& initial,
+                                         std::span<const double> scales, int degrees_of_freedom);
+
+/// Pairs whose residual under the transformation is below `tolerance`.
+std::size_t count_inliers(std::span<const PointPair> pairs, const Transformation& transformation, double tolerance);
+
+}  // namespace igsp

@@ -1,0 +1,99 @@
+#include "igsp/align.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "registration/pose_assessment.hpp"
+#include "registration/search.hpp"
+#include "registration/verdict.hpp"
+#include "spatial/scale.hpp"
+
+namespace igsp {
+namespace {
+
+// p_target = T_world p_source, from the transformation between the centred clouds.
+Transformation to_world(const Transformation& local, const Features& source, const Features& target) {
+  Transformation world = local;
+  world.translation() += target.origin - local.linear() * source.origin;
+  return world;
+}
+
+CloudSummary summary_of(const Features& features) {
+  return {features.cloud_points, features.points.size(), features.keypoints.size()};
+}
+
+void check_compatible(const Features& source, const Features& target) {
+  if (source.voxel_size == target.voxel_size) return;
+  throw InvalidArgument(fmt::format(
+      "source and target features were extracted with voxel_size {} and {}; both must be the same", source.voxel_size,
+      target.voxel_size));
+}
+
+StageTimings sum_of(StageTimings a, const StageTimings& b) {
+  for (std::size_t i = 0; i < a.size() && i < b.size(); ++i) a[i].second += b[i].second;
+  return a;
+}
+
+}  // namespace
+
+std::string_view to_string(Termination termination) {
+  switch (termination) {
+    case Termination::converged: return "converged";
+    case Termination::max_iterations: return "max_iterations";
+    case Termination::too_few_keypoints: return "too_few_keypoints";
+    case Termination::too_few_matches: return "too_few_matches";
+    case Termination::degenerate_matches: return "degenerate_matches";
+  }
+  return "unknown";
+}
+
+Result align(const Features& source, const Features& target, const Options& options,
+             const ProgressCallback& progress) {
+  validate(options);
+  check_compatible(source, target);
+  StageClock clock(progress);
+  Result result;
+  result.options = options;
+  result.voxel_size = target.voxel_size;
+  result.source = summary_of(source);
+  result.target = summary_of(target);
+
+  clock.start("common frame");
+  const PreparedCloud prepared_source(source), prepared_target(target);
+  CommonFrame frame(prepared_source, prepared_target, options.descriptor.radius * target.voxel_size, options.threads);
+  const SearchOutcome outcome = options.search == Search::direct ? direct_search(frame, options, clock)
+                                                                 : hypotheses_search(frame, options, clock);
+  result.termination = outcome.termination;
+  result.has_estimate = outcome.has_estimate;
+  result.target_from_source = to_world(outcome.target_from_source, source, target);
+  result.iterations = outcome.iterations;
+  for (IterationRecord& record : result.iterations) {
+    record.target_from_source = to_world(record.target_from_source, source, target);
+  }
+  clock.start("verdict");
+  judge(frame, outcome, result);
+  clock.finish();
+  result.timings_s = source.timings_s;
+  if (&source != &target) result.timings_s = sum_of(result.timings_s, target.timings_s);
+  result.timings_s.insert(result.timings_s.end(), clock.timings().begin(), clock.timings().end());
+  return result;
+}
+
+Result align(PointView source, PointView target, const Options& options, const ProgressCallback& progress) {
+  validate(options);
+  bounds_of(source, "source");
+  bounds_of(target, "target");
+  StageClock clock(progress);
+  clock.start("scale");
+  Options scaled = options;
+  scaled.scale.voxel_size = choose_voxel_size(source, target, options.scale);
+  clock.finish();
+  const Features source_features = extract_features(source, scaled, progress);
+  const Features target_features = extract_features(target, scaled, progress);
+  Result result = align(source_features, target_features, scaled, progress);
+  result.timings_s.insert(result.timings_s.begin(), clock.timings().begin(), clock.timings().end());
+  return result;
+}
+
+}  // namespace igsp

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <vector>
+
+#include "estimation/rigid_fit.hpp"
+#include "registration/prepared_cloud.hpp"
+
+namespace igsp {
+
+/// Descriptors of both clouds' keypoints in ONE frame, the target's axes: given a hypothesis of the rotation, no local
+/// reference frame is left that could fail to repeat. Descriptors of the target are computed once, those of the source
+/// are kept with their rotation and reused within 2 degrees.
+class CommonFrame {
+ public:
+  CommonFrame(const PreparedCloud& source, const PreparedCloud& target, double descriptor_radius, int threads);
+
+  const std::vector<Descriptor>& target_descriptors() const { return target_descriptors_; }
+  /// Valid until the next call.
+  const std::vector<Descriptor>& source_descriptors(const Eigen::Matrix3d& target_from_source);
+
+  const PreparedCloud& source() const { return source_; }
+  const PreparedCloud& target() const { return target_; }
+  double descriptor_radius() const { return descriptor_radius_; }
+  int threads() const { return threads_; }
+
+ private:
+  struct Cached {
+    Eigen::Matrix3d rotation;
+    std::vector<Descriptor> descriptors;
+  };
+  const PreparedCloud& source_;
+  const PreparedCloud& target_;
+  double descriptor_radius_;
+  int threads_;
+  std::vector<Descriptor> target_descriptors_;
+  std::vector<Cached> cache_;
+};
+
+/// Mutual nearest neighbours by feature distance in the common frame of a rotation.
+std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d& target_from_source);
+
+/// A hypothesis after matching again in its common frame.
+struct Rematch {
+  Transformation target_from_source;
+  std::vector<PointPair> matches;  ///< mutual nearest neighbours
+  std::size_t agreeing = 0;        ///< of them, within 2.5 voxels
+};
+
+/// Matches again, votes for the translation (mode of b - R a) and fits robustly; keeps the better of both poses.
+Rematch rematch(CommonFrame& frame, const Transformation& hypothesis, int degrees_of_freedom);
+
+}  // namespace igsp

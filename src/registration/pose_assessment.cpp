@@ -1,0 +1,69 @@
+#include "registration/pose_assessment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimation/robust_fit.hpp"
+#include "features/bsc.hpp"
+#include "matching/hamming.hpp"
+
+namespace igsp {
+namespace {
+
+constexpr double agreeing_distance = 2.5;      // voxels
+constexpr double on_surface = 1.5;             // voxels
+constexpr std::uint16_t same_place_bits = 95;  // true places differ by 56..92 bits in the common frame, others by 170
+constexpr std::size_t max_samples = 200;
+
+// Number of keypoints of one cloud that, mapped onto the other cloud, are on its surface and look the same there.
+// `axes` are the common frame's axes in the coordinates of `other`.
+double recognised_keypoints(PointView keypoints, std::span<const Descriptor> descriptors, const PreparedCloud& other,
+                            const Transformation& other_from_own, const Eigen::Matrix3d& axes, double radius) {
+  const std::size_t stride = std::max<std::size_t>(1, (keypoints.size() + max_samples - 1) / max_samples);
+  std::size_t sampled = 0, recognised = 0;
+  Support support;
+  for (std::size_t i = 0; i < keypoints.size(); i += stride) {
+    ++sampled;
+    const Eigen::Vector3d place = other_from_own * keypoints[i];
+    const float reach = static_cast<float>(on_surface * other.features.voxel_size);
+    if (other.grid.nearest(place.cast<float>(), reach) < 0) continue;
+    gather_support(other.grid, place, radius, support);
+    const Descriptor there = binary_shape_context(support, axes, radius);
+    recognised += feature_distance({&there, 1}, descriptors[i]) < same_place_bits;
+  }
+  if (sampled == 0) return 0;
+  return static_cast<double>(recognised) * static_cast<double>(keypoints.size()) / static_cast<double>(sampled);
+}
+
+}  // namespace
+
+double ranking_score(CommonFrame& frame, const Transformation& target_from_source) {
+  const Eigen::Matrix3d& rotation = target_from_source.linear();
+  const double radius = frame.descriptor_radius();
+  const double forward = recognised_keypoints(frame.source().keypoints, frame.source_descriptors(rotation),
+                                              frame.target(), target_from_source, Eigen::Matrix3d::Identity(), radius);
+  const double backward =
+      recognised_keypoints(frame.target().keypoints, frame.target_descriptors(), frame.source(),
+                           target_from_source.inverse(), rotation.transpose(), radius);
+  const auto matches = mutual_matches(frame, rotation);
+  const std::size_t agreeing =
+      count_inliers(matches, target_from_source, agreeing_distance * frame.target().features.voxel_size);
+  return std::sqrt(forward * backward) * static_cast<double>(agreeing);
+}
+
+PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from_source) {
+  PoseAssessment assessment;
+  assessment.source_on_target = surface_contact(frame.source(), frame.target(), target_from_source);
+  assessment.target_on_source = surface_contact(frame.target(), frame.source(), target_from_source.inverse());
+  const auto matches = mutual_matches(frame, target_from_source.linear());
+  assessment.mutual_matches = matches.size();
+  assessment.agreeing_matches =
+      count_inliers(matches, target_from_source, agreeing_distance * frame.target().features.voxel_size);
+  const double s = std::sqrt(assessment.source_on_target.share * assessment.target_on_source.share);
+  const double r = (static_cast<double>(assessment.agreeing_matches) + 0.1) /
+                   std::max(1.0, static_cast<double>(assessment.mutual_matches));
+  assessment.quality = 1.5 * std::log10(s / (1 - s)) + std::log10(r);
+  return assessment;
+}
+
+}  // namespace igsp

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "igsp/features.hpp"
+#include "spatial/point_grid.hpp"
+
+namespace igsp {
+
+/// A cloud's features with the search structure and the arrays that the registration stages share. Refers to `features`.
+struct PreparedCloud {
+  explicit PreparedCloud(const Features& cloud_features)
+      : features(cloud_features), grid(cloud_features.points, 3.0 * cloud_features.voxel_size) {
+    keypoints.reserve(features.keypoints.size());
+    for (const std::uint32_t i : features.keypoints) keypoints.push_back(features.points[i]);
+  }
+
+  const Features& features;
+  PointGrid grid;    ///< of the voxel centroids
+  Points keypoints;  ///< positions
+};
+
+}  // namespace igsp
