@@ -1,0 +1,60 @@
+#include "answer.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+namespace igsp::cli {
+namespace {
+
+std::string iteration_table(const Result& result) {
+  std::string text = fmt::format("\n{:>3} {:>6} {:>6} {:>8} {:>9} {:>8} {:>13} {:>11} {:>11} {:>8}\n", "k", "w_fd", "w_ed",
+                                 "T_cd", "edges", "matches", "energy", "step [deg]", "step", "seconds");
+  for (const IterationRecord& record : result.iterations) {
+    text += fmt::format("{:>3} {:>6.3f} {:>6.3f} {:>8.2f} {:>9} {:>8} {:>13.1f} {:>11.4g} {:>11.4g} {:>8.4f}\n", record.k,
+                        record.w_fd, record.w_ed, record.t_cd, record.candidate_edges, record.matches, record.energy,
+                        record.rotation_step_rad * 180.0 / std::numbers::pi, record.translation_step, record.seconds);
+  }
+  return text;
+}
+
+std::string timing_table(const Result& result) {
+  std::string text = "\n";
+  for (const auto& [stage, seconds] : result.timings_s) text += fmt::format("{:<24} {:8.4f} s\n", stage, seconds);
+  return text;
+}
+
+std::string cloud_line(std::string_view name, const CloudSummary& cloud) {
+  return fmt::format("{:<11} {} points, {} voxels, {} keypoints\n", name, cloud.points, cloud.voxels, cloud.keypoints);
+}
+
+}  // namespace
+
+std::string matrix_text(const Transformation& transformation) {
+  std::string text;
+  for (int i = 0; i < 4; ++i) {
+    const auto row = transformation.matrix().row(i);
+    text += fmt::format("{:>25.17g} {:>25.17g} {:>25.17g} {:>25.17g}\n", row[0], row[1], row[2], row[3]);
+  }
+  return text;
+}
+
+std::string answer_text(const Result& result, double seconds, bool verbose) {
+  std::string text = fmt::format("{}: {}\n", result.registered ? "registered" : "not registered", result.reason);
+  if (result.has_estimate) {
+    text += fmt::format("{}\n{}", result.registered ? "target_from_source" : "best estimate of target_from_source, not to be relied on",
+                        matrix_text(result.target_from_source));
+    text += fmt::format("overlap     {:.3f} (source {:.3f}, target {:.3f})\n", result.overlap(), result.overlap_source,
+                        result.overlap_target);
+    text += fmt::format("RMSE        {:.4g}\n", result.rmse);
+  }
+  text += fmt::format("voxel size  {:.6g} ({})\n", result.voxel_size,
+                      result.options.scale.voxel_size > 0 ? "given" : "chosen from both clouds");
+  text += cloud_line("source", result.source) + cloud_line("target", result.target);
+  text += fmt::format("iterations  {} ({})\n", result.iterations.size(), to_string(result.termination));
+  text += fmt::format("time        {:.2f} s\n", seconds);
+  if (verbose) text += iteration_table(result) + timing_table(result);
+  return text;
+}
+
+}  // namespace igsp::cli

@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cloud_input.hpp"
+#include "commands.hpp"
+#include "exit_codes.hpp"
+#include "progress_bar.hpp"
+#include "spatial/point_grid.hpp"
+
+namespace igsp::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kept_points = 20'000'000;
+
+std::string_view name_of(FileFormat format) {
+  switch (format) {
+    case FileFormat::ply_ascii:
+      return "PLY, ascii";
+    case FileFormat::ply_binary_little_endian:
+      return "PLY, binary little endian";
+    case FileFormat::ply_binary_big_endian:
+      return "PLY, binary big endian";
+    case FileFormat::pcd_ascii:
+      return "PCD, ascii";
+    case FileFormat::pcd_binary:
+      return "PCD, binary";
+    case FileFormat::pcd_binary_compressed:
+      return "PCD, binary compressed";
+    case FileFormat::text:
+      return "text";
+  }
+  return "";
+}
+
+// Median distance to the nearest other point, over a sample.
+double spacing_of(PointView cloud, const Bounds& bounds, double voxel_size) {
+  const Eigen::Vector3d origin = centre_of(bounds);
+  Points local(cloud.begin(), cloud.end());
+  for (Eigen::Vector3d& point : local) point -= origin;
+  const PointGrid grid(local, voxel_size);
+  std::vector<float> distances;
+  const std::size_t stride = std::max<std::size_t>(1, local.size() / 2000);
+  for (std::size_t i = 0; i < local.size(); i += stride) {
+    float nearest = INFINITY;
+    grid.visit_sphere(local[i].cast<float>(), static_cast<float>(voxel_size), [&](std::uint32_t j, float squared) {
+      if (grid.index[j] != i) nearest = std::min(nearest, squared);
+    });
+    distances.push_back(std::sqrt(nearest));
+  }
+  std::ranges::nth_element(distances, distances.begin() + distances.size() / 2);
+  return distances[distances.size() / 2];
+}
+
+void print_info(const CloudInput& cloud) {
+  const Eigen::Vector3d extent = cloud.bounds.max - cloud.bounds.min;
+  const double magnitude = cloud.bounds.min.cwiseAbs().cwiseMax(cloud.bounds.max.cwiseAbs()).maxCoeff();
+  const double voxel_size = choose_voxel_size(cloud.points, cloud.points, {});
+  const double spacing = spacing_of(cloud.points, cloud.bounds, voxel_size);
+  fmt::print("{}\n", cloud.path.string());
+  fmt::print("  format                {}\n", name_of(cloud.format));
+  fmt::print("  points                {}{}\n", cloud.total,
+             cloud.dropped > 0 ? fmt::format(" and {} dropped, not finite", cloud.dropped) : "");
+  fmt::print("  extent                {:.6g} x {:.6g} x {:.6g}\n", extent.x(), extent.y(), extent.z());
+  fmt::print("  from                  {:.10g} {:.10g} {:.10g}\n", cloud.bounds.min.x(), cloud.bounds.min.y(), cloud.bounds.min.z());
+  fmt::print("  to                    {:.10g} {:.10g} {:.10g}\n", cloud.bounds.max.x(), cloud.bounds.max.y(), cloud.bounds.max.z());
+  fmt::print("  largest coordinate    {:.10g} (as float: exact to {:.2g})\n", magnitude, std::ldexp(magnitude, -24));
+  fmt::print("  spacing               {}\n", std::isfinite(spacing) ? fmt::format("{:.4g}{}", spacing, cloud.whole() ? "" : " after thinning") : fmt::format("above {:.4g}", voxel_size));
+  fmt::print("  suggested voxel size  {:.4g}\n", voxel_size);
+}
+
+int run_info(const std::vector<fs::path>& paths) {
+  std::vector<CloudInput> clouds;
+  for (const fs::path& path : paths) {
+    ProgressBar bar(true);
+    const CloudInput cloud = read_cloud(path, kept_points, "read", bar.callback());
+    bar.finish();
+    print_info(cloud);
+  }
+  return exit_registered;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, Command& command) {
+  CLI::App* info = app.add_subcommand("info", "what a point cloud file holds, and the voxel size that suits it");
+  const auto paths = std::make_shared<std::vector<fs::path>>();
+  info->add_option("FILE", *paths, "PLY, PCD or text (XYZ, TXT, CSV, PTS)")->required()->type_name("");
+  info->footer("Example:\n  igsp info scan.ply\nA pair is aligned with one voxel size for both clouds, which `igsp align` chooses and prints.");
+  info->callback([paths, &command] { command = [paths] { return run_info(*paths); }; });
+}
+
+}  // namespace igsp::cli

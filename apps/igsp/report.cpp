@@ -1,0 +1,87 @@
+#include "report.hpp"
+
+#include <sys/resource.h>
+
+#include "config/option_list.hpp"
+#include "igsp/version.hpp"
+
+namespace igsp::cli {
+namespace {
+
+Json to_json(const OptionValue& value) {
+  return std::visit([](const auto& alternative) { return Json(alternative); }, value);
+}
+
+Json to_json(const CloudInput& input, const CloudSummary& summary) {
+  return {{"path", input.path.string()},   {"points", input.total},        {"dropped_points", input.dropped},
+          {"streamed", !input.whole()},    {"voxels", summary.voxels},     {"keypoints", summary.keypoints}};
+}
+
+Json to_json(const IterationRecord& record) {
+  return {{"k", record.k},
+          {"w_fd", record.w_fd},
+          {"w_ed", record.w_ed},
+          {"t_cd", record.t_cd},
+          {"candidate_edges", record.candidate_edges},
+          {"matches", record.matches},
+          {"energy", record.energy},
+          {"rotation_step_rad", record.rotation_step_rad},
+          {"translation_step", record.translation_step},
+          {"seconds", record.seconds},
+          {"target_from_source", cli::to_json(record.target_from_source)}};
+}
+
+}  // namespace
+
+Json to_json(const Transformation& transformation) {
+  Json rows = Json::array();
+  for (int i = 0; i < 4; ++i) {
+    Json row = Json::array();
+    for (int j = 0; j < 4; ++j) row.push_back(transformation.matrix()(i, j));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json to_json(const Options& options) {
+  Json json = Json::object();
+  for (const Option& option : option_list()) {
+    Json& section = option.section.empty() ? json : json[std::string(option.section)];
+    section[std::string(name_in_section(option))] = to_json(option.get(options));
+  }
+  return json;
+}
+
+Json align_report(const Result& result, const CloudInput& source, const CloudInput& target,
+                  const std::vector<std::string>& warnings) {
+  Json json;
+  json["version"] = version;
+  json["verdict"] = result.registered ? "registered" : "not_registered";
+  json["reason"] = result.reason;
+  json["termination"] = to_string(result.termination);
+  json["target_from_source"] = result.has_estimate ? to_json(result.target_from_source) : Json(nullptr);
+  json["overlap"] = result.overlap();
+  json["overlap_source"] = result.overlap_source;
+  json["overlap_target"] = result.overlap_target;
+  json["rmse"] = result.rmse;
+  json["voxel_size"] = result.voxel_size;
+  json["source"] = to_json(source, result.source);
+  json["target"] = to_json(target, result.target);
+  json["keypoints"] = {{"source", result.source.keypoints}, {"target", result.target.keypoints}};
+  json["iterations"] = Json::array();
+  for (const IterationRecord& record : result.iterations) json["iterations"].push_back(to_json(record));
+  json["timings_s"] = Json::object();
+  for (const auto& [stage, seconds] : result.timings_s) json["timings_s"][stage] = seconds;
+  json["peak_memory_bytes"] = peak_memory_bytes();
+  json["warnings"] = warnings;
+  json["options"] = to_json(result.options);
+  return json;
+}
+
+std::size_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace igsp::cli

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cloud_input.hpp"
+#include "igsp/result.hpp"
+
+namespace igsp::cli {
+
+using Json = nlohmann::ordered_json;
+
+/// Four rows of four numbers.
+Json to_json(const Transformation& transformation);
+
+/// All options by section, as the option list has them.
+Json to_json(const Options& options);
+
+/// What `igsp align --report` writes.
+Json align_report(const Result& result, const CloudInput& source, const CloudInput& target,
+                  const std::vector<std::string>& warnings);
+
+std::size_t peak_memory_bytes();
+
+}  // namespace igsp::cli
