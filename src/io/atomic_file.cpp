@@ -15,7 +15,8 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_
   if (std::filesystem::is_directory(status)) fail("cannot write", EISDIR);
   if (std::filesystem::exists(status)) {
     // Renaming over a device or a pipe would replace it.
-    if (!std::filesystem::is_regular_file(status)) throw FileError(path_.string() + ": cannot write: not a regular file");
+    if (!std::filesystem::is_regular_file(status))
+      throw FileError(path_.string() + ": cannot write: not a regular file");
     target_ = std::filesystem::canonical(path, error);
     if (error) fail("cannot write", error.value());
   }

@@ -49,8 +49,8 @@ PointCoordinates read_record(InputFile& file, const ListRecords& records) {
 void FixedRecords::require_records(const InputFile& file) const {
   file.require_records(remaining, stride, "points");
   if (stride > InputFile::buffer_size) {
-    file.fail_at_offset(file.offset(), fmt::format("{} bytes for one point; at most {} are supported", stride,
-                                                   InputFile::buffer_size));
+    file.fail_at_offset(
+        file.offset(), fmt::format("{} bytes for one point; at most {} are supported", stride, InputFile::buffer_size));
   }
 }
 

@@ -10,11 +10,14 @@ FormatFamily family_of(FileFormat format) {
   switch (format) {
     case FileFormat::ply_ascii:
     case FileFormat::ply_binary_little_endian:
-    case FileFormat::ply_binary_big_endian: return FormatFamily::ply;
+    case FileFormat::ply_binary_big_endian:
+      return FormatFamily::ply;
     case FileFormat::pcd_ascii:
     case FileFormat::pcd_binary:
-    case FileFormat::pcd_binary_compressed: return FormatFamily::pcd;
-    case FileFormat::text: return FormatFamily::text;
+    case FileFormat::pcd_binary_compressed:
+      return FormatFamily::pcd;
+    case FileFormat::text:
+      return FormatFamily::text;
   }
   return FormatFamily::unknown;
 }
@@ -41,10 +44,14 @@ FormatFamily family_of(const std::filesystem::path& path) {
 
 FileFormat format_of(const std::filesystem::path& path) {
   switch (io::family_of(path)) {
-    case io::FormatFamily::ply: return FileFormat::ply_binary_little_endian;
-    case io::FormatFamily::pcd: return FileFormat::pcd_binary;
-    case io::FormatFamily::text: return FileFormat::text;
-    case io::FormatFamily::unknown: break;
+    case io::FormatFamily::ply:
+      return FileFormat::ply_binary_little_endian;
+    case io::FormatFamily::pcd:
+      return FileFormat::pcd_binary;
+    case io::FormatFamily::text:
+      return FileFormat::text;
+    case io::FormatFamily::unknown:
+      break;
   }
   throw FileError(path.string() +
                   ": unknown kind of file; the extension must be one of .ply, .pcd, .xyz, .txt, .csv, .pts");

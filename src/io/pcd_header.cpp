@@ -138,11 +138,16 @@ ScalarType scalar_type_of(const InputFile& file, const PcdField& field) {
   if (field.type == 'I' || field.type == 'U') {
     const bool is_signed = field.type == 'I';
     switch (field.size) {
-      case 1: return is_signed ? ScalarType::int8 : ScalarType::uint8;
-      case 2: return is_signed ? ScalarType::int16 : ScalarType::uint16;
-      case 4: return is_signed ? ScalarType::int32 : ScalarType::uint32;
-      case 8: return is_signed ? ScalarType::int64 : ScalarType::uint64;
-      default: break;
+      case 1:
+        return is_signed ? ScalarType::int8 : ScalarType::uint8;
+      case 2:
+        return is_signed ? ScalarType::int16 : ScalarType::uint16;
+      case 4:
+        return is_signed ? ScalarType::int32 : ScalarType::uint32;
+      case 8:
+        return is_signed ? ScalarType::int64 : ScalarType::uint64;
+      default:
+        break;
     }
   }
   file.fail_at_line(fmt::format("unknown type: field {} has TYPE {} and SIZE {}", in_quotes(field.name),

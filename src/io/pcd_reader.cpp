@@ -67,7 +67,8 @@ std::vector<char> read_compressed(InputFile& file, std::uint64_t points, std::ui
   const std::uint64_t size = read_uint32(file);
   file.require_records(1, compressed_size, "compressed bodies");
   if (size / stride != points || size % stride != 0) {
-    file.fail_at_offset(start + 4, fmt::format("a body of {} bytes cannot be {} points of {} bytes", size, points, stride));
+    file.fail_at_offset(start + 4,
+                        fmt::format("a body of {} bytes cannot be {} points of {} bytes", size, points, stride));
   }
   if (size > best_ratio * compressed_size) {
     file.fail_at_offset(start, fmt::format("{} compressed bytes cannot hold {} bytes", compressed_size, size));

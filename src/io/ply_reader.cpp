@@ -61,8 +61,8 @@ void skip_element(InputFile& file, const PlyElement& element, FileFormat format)
   if (element.properties.empty()) return;
   for (std::uint64_t i = 0; i < element.count; ++i) {
     if (!file.skip_line()) {
-      file.fail_at_line(fmt::format("the file ends after {} of {} '{}' elements: truncated", i, element.count,
-                                    element.name));
+      file.fail_at_line(
+          fmt::format("the file ends after {} of {} '{}' elements: truncated", i, element.count, element.name));
     }
   }
 }

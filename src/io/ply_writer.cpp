@@ -8,7 +8,10 @@ void write_ply(AtomicFile& file, PointView points, const WriteJob& job) {
   const bool ascii = job.format == FileFormat::ply_ascii;
   const bool big = job.format == FileFormat::ply_binary_big_endian;
   const char* type = job.single_precision ? "float" : "double";
-  file.write(fmt::format("ply\nformat {} 1.0\nelement vertex {}\n", ascii ? "ascii" : big ? "binary_big_endian" : "binary_little_endian",
+  file.write(fmt::format("ply\nformat {} 1.0\nelement vertex {}\n",
+                         ascii ? "ascii"
+                         : big ? "binary_big_endian"
+                               : "binary_little_endian",
                          points.size()));
   file.write(fmt::format("property {0} x\nproperty {0} y\nproperty {0} z\nend_header\n", type));
   if (ascii) {

@@ -30,9 +30,12 @@ io::PointBody open_body(io::InputFile& file) {
   if (found == FormatFamily::ply) return io::open_ply(file);
   if (found == FormatFamily::pcd) return io::open_pcd(file);
   switch (io::family_of(format_of(file.path()))) {
-    case FormatFamily::ply: file.fail_at_offset(0, "not a PLY file: it does not start with a line 'ply'");
-    case FormatFamily::pcd: file.fail_at_offset(0, "not a PCD file: it starts neither with '# .PCD' nor with VERSION");
-    default: return io::open_text(file);
+    case FormatFamily::ply:
+      file.fail_at_offset(0, "not a PLY file: it does not start with a line 'ply'");
+    case FormatFamily::pcd:
+      file.fail_at_offset(0, "not a PCD file: it starts neither with '# .PCD' nor with VERSION");
+    default:
+      return io::open_text(file);
   }
 }
 
@@ -64,9 +67,15 @@ PointView PointReader::next_chunk() {
   return chunk.points;
 }
 
-FileFormat PointReader::format() const { return implementation_->body.format; }
-std::size_t PointReader::dropped() const { return implementation_->chunk.dropped; }
-std::size_t PointReader::declared_points() const { return implementation_->body.declared_points; }
+FileFormat PointReader::format() const {
+  return implementation_->body.format;
+}
+std::size_t PointReader::dropped() const {
+  return implementation_->chunk.dropped;
+}
+std::size_t PointReader::declared_points() const {
+  return implementation_->body.declared_points;
+}
 
 LoadedCloud read_points(const std::filesystem::path& path) {
   PointReader reader(path);

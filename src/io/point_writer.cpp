@@ -86,10 +86,17 @@ void write_points(const std::filesystem::path& path, PointView points, const Wri
   require_writable(points, options.single_precision);
   io::AtomicFile file(path);
   switch (io::family_of(format)) {
-    case io::FormatFamily::ply: io::write_ply(file, points, job); break;
-    case io::FormatFamily::pcd: io::write_pcd(file, points, job); break;
-    case io::FormatFamily::text: io::write_text(file, points, job); break;
-    case io::FormatFamily::unknown: throw InvalidArgument("options.format is none of the formats");
+    case io::FormatFamily::ply:
+      io::write_ply(file, points, job);
+      break;
+    case io::FormatFamily::pcd:
+      io::write_pcd(file, points, job);
+      break;
+    case io::FormatFamily::text:
+      io::write_text(file, points, job);
+      break;
+    case io::FormatFamily::unknown:
+      throw InvalidArgument("options.format is none of the formats");
   }
   file.commit();
 }

@@ -23,8 +23,10 @@ std::optional<std::uint64_t> parse_count_line(const std::vector<std::string_view
   return values.size() == 1 ? parse_number<std::uint64_t>(values[0]) : std::nullopt;
 }
 
-bool has_number(const std::vector<std::string_view>& values) {
-  return std::ranges::any_of(values, [](std::string_view value) { return parse_number<double>(value).has_value(); });
+/// Also of a broken number: a line with '1,5' is not one of column names.
+bool looks_numeric(std::string_view value) {
+  return parse_number<double>(value).has_value() ||
+         (!value.empty() && std::string_view("+-.0123456789").find(value[0]) != value.npos);
 }
 
 Column column_of(std::string_view name) {
@@ -65,7 +67,7 @@ PointBody open_text(InputFile& file) {
     const auto count_here = parse_count_line(values);
     if (count_here && !count) {
       count = count_here;
-    } else if (!has_number(values) && table.columns.empty()) {
+    } else if (std::ranges::none_of(values, looks_numeric) && table.columns.empty()) {
       table.columns = parse_names(file, values);
     } else {
       file.unread_line();

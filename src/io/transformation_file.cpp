@@ -57,7 +57,8 @@ Transformation read_transformation(const std::filesystem::path& path) {
     file.fail_at_line(fmt::format("{} numbers; a transformation has 16 (4x4) or 12 (3x4)", numbers.size()));
   }
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  for (std::size_t i = 0; i < numbers.size(); ++i) matrix(static_cast<int>(i / 4), static_cast<int>(i % 4)) = numbers[i];
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    matrix(static_cast<int>(i / 4), static_cast<int>(i % 4)) = numbers[i];
   if (const auto reason = why_not_rigid(matrix)) file.fail_at_line(*reason);
   Transformation transformation = Transformation::Identity();
   transformation.affine() = matrix.topRows<3>();
