@@ -68,10 +68,9 @@ std::vector<std::string> warnings_about(const CloudInput& source, const CloudInp
   constexpr double suspicious = 100.0;
   const double power = std::log10(source.bounds.diagonal() / target.bounds.diagonal());
   if (std::abs(power) >= std::log10(suspicious)) {
-    warnings.push_back(fmt::format("clouds in different units? Extents differ by a factor of about {:g}: source {:.4g}, "
-                                   "target {:.4g}",
-                                   std::pow(10.0, std::round(std::abs(power))), source.bounds.diagonal(),
-                                   target.bounds.diagonal()));
+    warnings.push_back(fmt::format(
+        "clouds in different units? Extents differ by a factor of about {:g}: source {:.4g}, target {:.4g}",
+        std::pow(10.0, std::round(std::abs(power))), source.bounds.diagonal(), target.bounds.diagonal()));
   }
   return warnings;
 }
@@ -151,18 +150,21 @@ constexpr const char* examples =
     "  igsp align a.pcd b.xyz --preset paper --voxel-size 0.1 -o aligned.ply --transform T.txt --report run.json\n"
     "  igsp align a.ply b.ply --config igsp.toml --threads 4\n"
     "The options start from --preset or --config; flags override them. Exit codes: 0 registered, 1 not registered,\n"
-    "2 usage or option, 3 input or output, 130 interrupted. PLY, PCD and text (XYZ, TXT, CSV, PTS) are read and written.";
+    "2 usage or option, 3 input or output, 130 interrupted. PLY, PCD and text (XYZ, TXT, CSV, PTS) are read, written.";
 
 }  // namespace
 
 void add_align_command(CLI::App& app, Command& command) {
-  CLI::App* align = app.add_subcommand("align", "find target_from_source: the rigid motion that puts SOURCE onto TARGET");
+  CLI::App* align =
+      app.add_subcommand("align", "find target_from_source, the rigid motion that puts SOURCE onto TARGET");
   const auto settings = std::make_shared<AlignSettings>();
   align->add_option("SOURCE", settings->source, "cloud that moves")->required()->type_name("");
   align->add_option("TARGET", settings->target, "cloud that stays")->required()->type_name("");
-  align->add_option("-o,--output", settings->aligned, "write all points of SOURCE, moved into TARGET's frame")->type_name("FILE");
+  align->add_option("-o,--output", settings->aligned, "write all points of SOURCE, moved into TARGET's frame")
+      ->type_name("FILE");
   align->add_option("--transform", settings->transformation, "write target_from_source, 4x4 text")->type_name("FILE");
-  align->add_option("--report", settings->report, "write the whole answer as JSON, whatever the verdict")->type_name("FILE");
+  align->add_option("--report", settings->report, "write the whole answer as JSON, whatever the verdict")
+      ->type_name("FILE");
   align->add_flag("--force", settings->force, "write -o and --transform also for an estimate that is not registered");
   align->add_option("--max-points", settings->max_points,
                     wrapped("a cloud with more points is streamed through the voxel filter instead of kept whole; "

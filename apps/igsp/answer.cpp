@@ -8,12 +8,14 @@ namespace igsp::cli {
 namespace {
 
 std::string iteration_table(const Result& result) {
-  std::string text = fmt::format("\n{:>3} {:>6} {:>6} {:>8} {:>9} {:>8} {:>13} {:>11} {:>11} {:>8}\n", "k", "w_fd", "w_ed",
-                                 "T_cd", "edges", "matches", "energy", "step [deg]", "step", "seconds");
+  std::string text =
+      fmt::format("\n{:>3} {:>6} {:>6} {:>8} {:>9} {:>8} {:>13} {:>11} {:>11} {:>8}\n", "k", "w_fd", "w_ed", "T_cd",
+                  "edges", "matches", "energy", "step [deg]", "step", "seconds");
   for (const IterationRecord& record : result.iterations) {
-    text += fmt::format("{:>3} {:>6.3f} {:>6.3f} {:>8.2f} {:>9} {:>8} {:>13.1f} {:>11.4g} {:>11.4g} {:>8.4f}\n", record.k,
-                        record.w_fd, record.w_ed, record.t_cd, record.candidate_edges, record.matches, record.energy,
-                        record.rotation_step_rad * 180.0 / std::numbers::pi, record.translation_step, record.seconds);
+    text += fmt::format("{:>3} {:>6.3f} {:>6.3f} {:>8.2f} {:>9} {:>8} {:>13.1f} {:>11.4g} {:>11.4g} {:>8.4f}\n",
+                        record.k, record.w_fd, record.w_ed, record.t_cd, record.candidate_edges, record.matches,
+                        record.energy, record.rotation_step_rad * 180.0 / std::numbers::pi, record.translation_step,
+                        record.seconds);
   }
   return text;
 }
@@ -42,8 +44,8 @@ std::string matrix_text(const Transformation& transformation) {
 std::string answer_text(const Result& result, double seconds, bool verbose) {
   std::string text = fmt::format("{}: {}\n", result.registered ? "registered" : "not registered", result.reason);
   if (result.has_estimate) {
-    text += fmt::format("{}\n{}", result.registered ? "target_from_source" : "best estimate of target_from_source, not to be relied on",
-                        matrix_text(result.target_from_source));
+    text += result.registered ? "target_from_source\n" : "best estimate of target_from_source, not to be relied on\n";
+    text += matrix_text(result.target_from_source);
     text += fmt::format("overlap     {:.3f} (source {:.3f}, target {:.3f})\n", result.overlap(), result.overlap_source,
                         result.overlap_target);
     text += fmt::format("RMSE        {:.4g}\n", result.rmse);

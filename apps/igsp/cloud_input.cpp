@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "igsp/errors.hpp"
 #include "spatial/voxel_grid.hpp"
@@ -40,12 +41,14 @@ class ThinnedStream {
 };
 
 void check_extent(const CloudInput& cloud) {
-  const auto fail = [&](const std::string& why) { throw FileError(cloud.path.string() + ": " + why); };
-  const std::string dropped =
-      cloud.dropped > 0 ? fmt::format(" ({} points with a coordinate that is not finite were dropped)", cloud.dropped) : "";
-  if (cloud.total == 0) fail("holds no finite point" + dropped);
-  if (cloud.total == 1) fail("holds a single point" + dropped);
-  if (cloud.bounds.diagonal() == 0.0) fail(fmt::format("all {} points are equal{}", cloud.total, dropped));
+  const auto fail = [&](const std::string& why) {
+    const std::string dropped =
+        cloud.dropped > 0 ? fmt::format(" ({} dropped for a coordinate that is not finite)", cloud.dropped) : "";
+    throw FileError(fmt::format("{}: {}{}", cloud.path.string(), why, dropped));
+  };
+  if (cloud.total == 0) fail("holds no finite point");
+  if (cloud.total == 1) fail("holds a single point");
+  if (cloud.bounds.diagonal() == 0.0) fail(fmt::format("all {} points are equal", cloud.total));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <iostream>
 #include <new>
@@ -11,6 +12,7 @@
 #include "commands.hpp"
 #include "config/nearest.hpp"
 #include "exit_codes.hpp"
+#include "help_text.hpp"
 #include "igsp/errors.hpp"
 #include "igsp/version.hpp"
 #include "interrupt.hpp"
@@ -80,7 +82,8 @@ int run_guarded(const Command& command) {
   } catch (const InvalidArgument& error) {
     return report_error(error.what(), exit_usage);
   } catch (const FileError& error) {
-    return interrupted() ? report_error("interrupted", exit_interrupted) : report_error(error.what(), exit_input_output);
+    if (interrupted()) return report_error("interrupted", exit_interrupted);
+    return report_error(error.what(), exit_input_output);
   } catch (const std::bad_alloc&) {
     return report_error("not enough memory for these clouds; a smaller --max-points streams them", exit_input_output);
   } catch (const std::exception& error) {
@@ -107,6 +110,7 @@ int run(int argc, char** argv) {
   CLI::App app("igsp puts one point cloud onto another, without an initial guess", "igsp");
   app.set_version_flag("--version", fmt::format("igsp {}", version));
   app.footer(footer);
+  app.get_formatter()->column_width(help_column);
   Command command;
   add_align_command(app, command);
   add_evaluate_command(app, command);

@@ -63,17 +63,20 @@ int run_evaluate(const EvaluateSettings& settings) {
 constexpr const char* examples =
     "Example:\n"
     "  igsp evaluate --transform T.txt --truth T_gt.txt --source a.ply\n"
-    "Both files hold target_from_source as 4x4 text, rows in order. e_r and e_t are Eq. 12-13 of the paper; e_t grows with\n"
-    "the distance of the clouds from the origin, the displacement of the source's centroid does not.";
+    "Both files hold target_from_source as 4x4 text, rows in order. e_r and e_t are Eq. 12-13 of the paper; e_t\n"
+    "depends on where the origin is, the displacement of the source's centroid does not.";
 
 }  // namespace
 
 void add_evaluate_command(CLI::App& app, Command& command) {
   CLI::App* evaluate = app.add_subcommand("evaluate", "error of a transformation against the true one");
   const auto settings = std::make_shared<EvaluateSettings>();
-  evaluate->add_option("--transform", settings->transformation, "estimated target_from_source")->required()->type_name("FILE");
+  evaluate->add_option("--transform", settings->transformation, "estimated target_from_source")
+      ->required()
+      ->type_name("FILE");
   evaluate->add_option("--truth", settings->truth, "true target_from_source")->required()->type_name("FILE");
-  evaluate->add_option("--source", settings->source, "source cloud, for the displacement of its centroid")->type_name("FILE");
+  evaluate->add_option("--source", settings->source, "source cloud, for the displacement of its centroid")
+      ->type_name("FILE");
   evaluate->add_flag("--json", settings->json, "print JSON");
   evaluate->footer(examples);
   evaluate->callback([settings, &command] { command = [settings] { return run_evaluate(*settings); }; });

@@ -1,5 +1,7 @@
 #include "help_text.hpp"
 
+#include <algorithm>
+
 namespace igsp::cli {
 
 std::string wrapped(std::string_view text, std::size_t width) {

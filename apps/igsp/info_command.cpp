@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "cloud_input.hpp"
 #include "commands.hpp"
@@ -46,9 +47,11 @@ double spacing_of(PointView cloud, const Bounds& bounds, double voxel_size) {
   const std::size_t stride = std::max<std::size_t>(1, local.size() / 2000);
   for (std::size_t i = 0; i < local.size(); i += stride) {
     float nearest = INFINITY;
-    grid.visit_sphere(local[i].cast<float>(), static_cast<float>(voxel_size), [&](std::uint32_t j, float squared) {
-      if (grid.index[j] != i) nearest = std::min(nearest, squared);
-    });
+    for (double radius = voxel_size; !std::isfinite(nearest); radius *= 2.0) {
+      grid.visit_sphere(local[i].cast<float>(), static_cast<float>(radius), [&](std::uint32_t j, float squared) {
+        if (grid.index[j] != i) nearest = std::min(nearest, squared);
+      });
+    }
     distances.push_back(std::sqrt(nearest));
   }
   std::ranges::nth_element(distances, distances.begin() + distances.size() / 2);
@@ -65,15 +68,14 @@ void print_info(const CloudInput& cloud) {
   fmt::print("  points                {}{}\n", cloud.total,
              cloud.dropped > 0 ? fmt::format(" and {} dropped, not finite", cloud.dropped) : "");
   fmt::print("  extent                {:.6g} x {:.6g} x {:.6g}\n", extent.x(), extent.y(), extent.z());
-  fmt::print("  from                  {:.10g} {:.10g} {:.10g}\n", cloud.bounds.min.x(), cloud.bounds.min.y(), cloud.bounds.min.z());
-  fmt::print("  to                    {:.10g} {:.10g} {:.10g}\n", cloud.bounds.max.x(), cloud.bounds.max.y(), cloud.bounds.max.z());
+  fmt::print("  from                  {:.10g}\n", fmt::join(cloud.bounds.min.data(), cloud.bounds.min.data() + 3, " "));
+  fmt::print("  to                    {:.10g}\n", fmt::join(cloud.bounds.max.data(), cloud.bounds.max.data() + 3, " "));
   fmt::print("  largest coordinate    {:.10g} (as float: exact to {:.2g})\n", magnitude, std::ldexp(magnitude, -24));
-  fmt::print("  spacing               {}\n", std::isfinite(spacing) ? fmt::format("{:.4g}{}", spacing, cloud.whole() ? "" : " after thinning") : fmt::format("above {:.4g}", voxel_size));
+  fmt::print("  spacing               {:.4g}{}\n", spacing, cloud.whole() ? "" : " (of the points kept in memory)");
   fmt::print("  suggested voxel size  {:.4g}\n", voxel_size);
 }
 
 int run_info(const std::vector<fs::path>& paths) {
-  std::vector<CloudInput> clouds;
   for (const fs::path& path : paths) {
     ProgressBar bar(true);
     const CloudInput cloud = read_cloud(path, kept_points, "read", bar.callback());
@@ -89,7 +91,9 @@ void add_info_command(CLI::App& app, Command& command) {
   CLI::App* info = app.add_subcommand("info", "what a point cloud file holds, and the voxel size that suits it");
   const auto paths = std::make_shared<std::vector<fs::path>>();
   info->add_option("FILE", *paths, "PLY, PCD or text (XYZ, TXT, CSV, PTS)")->required()->type_name("");
-  info->footer("Example:\n  igsp info scan.ply\nA pair is aligned with one voxel size for both clouds, which `igsp align` chooses and prints.");
+  info->footer(
+      "Example:\n  igsp info scan.ply\n"
+      "The voxel size of a pair, one for both clouds, is chosen and printed by `igsp align`.");
   info->callback([paths, &command] { command = [paths] { return run_info(*paths); }; });
 }
 

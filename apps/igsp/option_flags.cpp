@@ -33,7 +33,7 @@ std::string description(const Option& option) {
 
 void add_flag(CLI::App& command, const Option& option, std::optional<std::string>& text) {
   const auto store = [&text](const std::string& given) { text = given; };
-  const std::string group = "Method: " + std::string(option.section.empty() ? "general" : option.section);
+  const std::string group = option.section.empty() ? "Method" : "Method, " + std::string(option.section);
   if (option.kind == OptionKind::boolean) {
     const std::string name(option.flag.substr(2));
     command.add_flag_callback("--" + name, [store] { store("true"); }, description(option))->group(group);
@@ -49,7 +49,9 @@ void add_flag(CLI::App& command, const Option& option, std::optional<std::string
 
 std::shared_ptr<OptionFlags> add_option_flags(CLI::App& command) {
   const auto flags = std::make_shared<OptionFlags>();
-  command.add_option("--preset", flags->preset, fmt::format("{}; default default", fmt::join(preset_names(), " or ")))
+  command
+      .add_option("--preset", flags->preset,
+                  fmt::format("where the options start: {}", fmt::join(preset_names(), " or ")))
       ->type_name("NAME");
   command.add_option("--config", flags->config,
                      wrapped("options from a TOML file, as `igsp options` prints it; what it leaves out comes from the "

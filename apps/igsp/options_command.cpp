@@ -10,8 +10,7 @@ namespace igsp::cli {
 namespace {
 
 int run_options(const OptionFlags& flags) {
-  fmt::print("# Options of igsp {}. Lengths are multiples of the voxel size unless the unit says otherwise.\n{}", version,
-             options_to_toml(resolve(flags)));
+  fmt::print("# Options of igsp {}\n{}", version, options_to_toml(resolve(flags)));
   return exit_registered;
 }
 

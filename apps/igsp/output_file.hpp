@@ -3,12 +3,18 @@
 #include <filesystem>
 #include <string_view>
 
+#include "io/atomic_file.hpp"
+
 namespace igsp::cli {
 
 /// Throws FileError unless a file can be created at `path`: asked before a long run, not after it.
-void check_writable(const std::filesystem::path& path);
+inline void check_writable(const std::filesystem::path& path) { io::AtomicFile{path}; }
 
-/// Writes to a temporary name beside `path`, then renames; a device or pipe is written directly. Throws FileError.
-void write_text(const std::filesystem::path& path, std::string_view text);
+/// Whole or not at all. Throws FileError.
+inline void write_text(const std::filesystem::path& path, std::string_view text) {
+  io::AtomicFile file(path);
+  file.write(text);
+  file.commit();
+}
 
 }  // namespace igsp::cli

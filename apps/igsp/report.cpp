@@ -71,7 +71,9 @@ Json align_report(const Result& result, const CloudInput& source, const CloudInp
   json["iterations"] = Json::array();
   for (const IterationRecord& record : result.iterations) json["iterations"].push_back(to_json(record));
   json["timings_s"] = Json::object();
-  for (const auto& [stage, seconds] : result.timings_s) json["timings_s"][stage] = seconds;
+  for (const auto& [stage, seconds] : result.timings_s) {
+    json["timings_s"][stage] = json["timings_s"].value(stage, 0.0) + seconds;  // a stage may run once per cloud
+  }
   json["peak_memory_bytes"] = peak_memory_bytes();
   json["warnings"] = warnings;
   json["options"] = to_json(result.options);

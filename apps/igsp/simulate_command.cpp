@@ -22,7 +22,7 @@ struct SimulateSettings {
 void create_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (!fs::is_directory(folder)) throw FileError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
+  if (error) throw FileError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
   check_writable(folder / "station_0.ply");
 }
 
@@ -42,16 +42,17 @@ int run_simulate(const SimulateSettings& settings) {
     fmt::print("{}  true target_from_source, source station_{}, target station_0\n", truth.string(), i);
   }
   if (scans.size() < 2) return exit_registered;
-  fmt::print("try: igsp align {} {} --transform T.txt\n", file("station_1.ply").string(), file("station_0.ply").string());
-  fmt::print("     igsp evaluate --transform T.txt --truth {} --source {}\n", file("station_1_to_0.txt").string(),
-             file("station_1.ply").string());
+  const std::string source = file("station_1.ply"), target = file("station_0.ply"), truth = file("station_1_to_0.txt");
+  fmt::print("try: igsp align {} {} --transform T.txt\n", source, target);
+  fmt::print("     igsp evaluate --transform T.txt --truth {} --source {}\n", truth, source);
   return exit_registered;
 }
 
 constexpr const char* examples =
     "Example:\n"
     "  igsp simulate park --out scans --stations 3 --seed 1\n"
-    "Every scan is in the frame of its own scanner. station_<i>_to_0.txt takes station_<i> (source) to station_0 (target).";
+    "Every scan is in the frame of its own scanner; station_1_to_0.txt is the true target_from_source for station_1\n"
+    "as source and station_0 as target.";
 
 }  // namespace
 
@@ -60,11 +61,17 @@ void add_simulate_command(CLI::App& app, Command& command) {
   const auto settings = std::make_shared<SimulateSettings>();
   SimulationOptions& options = settings->options;
   simulate->add_option("SCENE", settings->scene, "park, indoor or object")->required()->type_name("");
-  simulate->add_option("--out", settings->folder, "folder for the files, made if missing")->required()->type_name("DIR");
+  simulate->add_option("--out", settings->folder, "folder for the files, made if missing")
+      ->required()
+      ->type_name("DIR");
   simulate->add_option("--stations", options.stations, "number of scans, in [1, 64]; default 2")->type_name("INTEGER");
   simulate->add_option("--points", options.points, "points of a scan, about; default 200000")->type_name("INTEGER");
-  simulate->add_option("--noise", options.noise, "standard deviation along the ray [m]; default: the scene's own")->type_name("NUMBER");
-  simulate->add_option("--station-distance", options.station_distance, "between neighbouring stations [m]; default 0: the scene's own")->type_name("NUMBER");
+  simulate->add_option("--noise", options.noise, "standard deviation along the ray [m]; default: the scene's own")
+      ->type_name("NUMBER");
+  simulate
+      ->add_option("--station-distance", options.station_distance,
+                   "between neighbouring stations [m]; default 0: the scene's own")
+      ->type_name("NUMBER");
   simulate->add_option("--seed", options.seed, "every seed is another scene; default 7")->type_name("INTEGER");
   simulate->footer(examples);
   simulate->callback([settings, &command] { command = [settings] { return run_simulate(*settings); }; });
