@@ -1,5 +1,6 @@
 #include "features/bsc.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -18,9 +19,10 @@ static_assert(bits == bsc_bits && bits <= 64 * bsc_words);
 // over the position inside the nearest cell, in 1/16 u. Steps are centred on 0 and rounding is symmetric, so a flipped
 // point finds exactly the flipped weights.
 constexpr int steps = 16;
-constexpr int patch = 16;  // 9 weights, padded to full vectors
+// 9 weights padded to 16: a generic vector, which the compiler lowers to whatever width the machine has.
+using Patch = float __attribute__((vector_size(64)));
 struct WeightTable {
-  alignas(64) float weight[(steps + 1) * (steps + 1)][patch];
+  Patch weight[(steps + 1) * (steps + 1)];
 };
 
 WeightTable make_weights() {
@@ -46,8 +48,8 @@ const WeightTable weights = make_weights();
 // still reaches into it.
 constexpr int ring_side = side + 2;
 struct alignas(64) Patches {
-  float density[ring_side * ring_side][patch];
-  float depth[ring_side * ring_side][patch];
+  Patch density[ring_side * ring_side];
+  Patch depth[ring_side * ring_side];
 };
 
 // a, b: in-plane coordinates, c: depth, all in cells (u).
@@ -66,88 +68,97 @@ IGSP_MULTIVERSION void accumulate(const float* a, const float* b, const float* c
     }
     for (int i = 0; i < count; ++i) {
       if (cell[i] < 0) continue;
-      const float* __restrict w = weights.weight[step[i]];
-      float* __restrict density = patches.density[cell[i]];
-      float* __restrict depth = patches.depth[cell[i]];
-      const float d = c[begin + i];
-      for (int k = 0; k < patch; ++k) {
-        density[k] += w[k];
-        depth[k] += d * w[k];
-      }
+      const Patch& weight = weights.weight[step[i]];
+      patches.density[cell[i]] += weight;
+      patches.depth[cell[i]] += c[begin + i] * weight;
     }
   }
 }
 
-// Sums in fixed point: integer addition has no order, so flips stay exact permutations.
-constexpr double fixed_one = 1 << 20;
+// Sums in fixed point: integer addition has no order, so flips stay exact permutations. Truncation is symmetric.
+constexpr float fixed_one = 1 << 11;
+using FixedPatch = std::int32_t __attribute__((vector_size(64)));
 struct CellSums {
-  std::array<std::int64_t, cells> weight{};
-  std::array<std::int64_t, cells> weighted_depth{};
+  std::array<std::int32_t, cells> weight{};
+  std::array<std::int32_t, cells> weighted_depth{};
 };
 
-CellSums sum_patches(const Patches& patches) {
-  CellSums sums;
-  for (int j = -half - 1; j <= half + 1; ++j) {
-    for (int i = -half - 1; i <= half + 1; ++i) {
-      const int nearest = (j + half + 1) * ring_side + i + half + 1;
+IGSP_MULTIVERSION void sum_patches(const Patches& patches, CellSums& sums) {
+  // A margin of one ring takes what falls outside the grid.
+  constexpr int margin_side = ring_side + 2;
+  std::int32_t weight[margin_side * margin_side] = {}, depth[margin_side * margin_side] = {};
+  for (int j = 0; j < ring_side; ++j) {
+    for (int i = 0; i < ring_side; ++i) {
+      const int nearest = j * ring_side + i;
       if (patches.density[nearest][4] == 0) continue;  // no point: the weight at the nearest cell is never 0
-      for (int dj = -1; dj <= 1; ++dj) {
-        for (int di = -1; di <= 1; ++di) {
-          if (std::abs(i + di) > half || std::abs(j + dj) > half) continue;
-          const int cell = cell_number(i + di, j + dj), k = (dj + 1) * 3 + di + 1;
-          sums.weight[cell] += std::llround(patches.density[nearest][k] * fixed_one);
-          sums.weighted_depth[cell] += std::llround(patches.depth[nearest][k] * fixed_one);
-        }
+      const FixedPatch w = __builtin_convertvector(patches.density[nearest] * fixed_one, FixedPatch);
+      const FixedPatch d = __builtin_convertvector(patches.depth[nearest] * fixed_one, FixedPatch);
+      for (int k = 0; k < 9; ++k) {
+        weight[(j + k / 3) * margin_side + i + k % 3] += w[k];
+        depth[(j + k / 3) * margin_side + i + k % 3] += d[k];
       }
     }
   }
-  return sums;
+  for (int cell = 0; cell < cells; ++cell) {
+    const int margin_cell = (cell / side + 2) * margin_side + cell % side + 2;
+    sums.weight[cell] = weight[margin_cell];
+    sums.weighted_depth[cell] = depth[margin_cell];
+  }
 }
 
-void set_bit(Descriptor& descriptor, int bit) { descriptor[bit / 64] |= std::uint64_t{1} << (bit % 64); }
+void append_bits(Descriptor& descriptor, int first_bit, std::uint64_t bits_to_set) {
+  descriptor[first_bit / 64] |= bits_to_set << (first_bit % 64);
+  if (first_bit % 64 != 0 && first_bit / 64 + 1 < bsc_words) {
+    descriptor[first_bit / 64 + 1] |= bits_to_set >> (64 - first_bit % 64);
+  }
+}
 
 // bit = |delta - mean| > sigma over the plane's pairs, without division: |n delta - sum| > sqrt(n sum2 - sum^2).
-template <typename Suppressed>
-void set_comparison_bits(const std::array<std::int64_t, cells>& value, int first_bit, const Suppressed& suppressed,
-                         Descriptor& descriptor) {
-  std::array<std::int64_t, pairs> delta;
+std::uint64_t comparison_bits(const std::array<std::int32_t, cells>& value) {
+  std::array<std::int32_t, pairs> delta;
   std::int64_t sum = 0, sum2 = 0;
   for (int k = 0; k < pairs; ++k) {
     delta[k] = value[pair_table[k].p] - value[pair_table[k].q];
     sum += delta[k];
-    sum2 += delta[k] * delta[k];
+    sum2 += std::int64_t{delta[k]} * delta[k];
   }
   const double scaled_sigma = std::sqrt(static_cast<double>(pairs * sum2 - sum * sum));
+  std::uint64_t result = 0;
   for (int k = 0; k < pairs; ++k) {
-    const bool stands_out = static_cast<double>(std::abs(pairs * delta[k] - sum)) > scaled_sigma;
-    if (stands_out && !suppressed(k)) set_bit(descriptor, first_bit + k);
+    const auto deviation = static_cast<double>(std::abs(pairs * std::int64_t{delta[k]} - sum));
+    result |= std::uint64_t{deviation > scaled_sigma} << k;
   }
+  return result;
 }
 
 void describe_plane(const CellSums& sums, int plane, std::size_t support_size, Descriptor& descriptor) {
   // Normalised density rho = (W / u^2) / (n / (pi R^2)) with R = 3.5 u.
-  const double rho_per_weight = M_PI * 0.25 * side * side / static_cast<double>(support_size);
-  constexpr double steps_per_unit = 1 << 16;  // of rho and of the depth in u: fine enough, and squares fit 64 bits
-  std::array<std::int64_t, cells> density, depth;
+  const float rho_per_weight = static_cast<float>(M_PI * 0.25 * side * side / static_cast<double>(support_size));
+  constexpr float steps_per_unit = 1 << 14;  // of rho and of the depth in u: fine enough, and sums of squares are exact
+  std::array<std::int32_t, cells> density, depth;
+  std::uint64_t occupied = 0, empty_pairs = 0;
   for (int cell = 0; cell < cells; ++cell) {
-    const double weight = static_cast<double>(sums.weight[cell]);
-    const double rho = weight / fixed_one * rho_per_weight;
-    if (rho > 0.1) set_bit(descriptor, plane * cells + cell);
-    density[cell] = std::llround(rho * steps_per_unit);
-    depth[cell] =
-        weight > 0 ? std::llround(static_cast<double>(sums.weighted_depth[cell]) / weight * steps_per_unit) : 0;
+    const float weight = static_cast<float>(sums.weight[cell]);
+    const float rho = weight / fixed_one * rho_per_weight;
+    occupied |= std::uint64_t{rho > 0.1f} << cell;
+    density[cell] = static_cast<std::int32_t>(rho * steps_per_unit);
+    depth[cell] = static_cast<std::int32_t>(static_cast<float>(sums.weighted_depth[cell]) / std::max(weight, 1.0f) *
+                                            steps_per_unit);
   }
-  set_comparison_bits(depth, depth_begin + plane * pairs, [](int) { return false; }, descriptor);
-  set_comparison_bits(
-      density, density_begin + plane * pairs,
-      [&](int k) { return sums.weight[pair_table[k].p] == 0 && sums.weight[pair_table[k].q] == 0; }, descriptor);
+  for (int k = 0; k < pairs; ++k) {
+    const bool empty = sums.weight[pair_table[k].p] == 0 && sums.weight[pair_table[k].q] == 0;
+    empty_pairs |= std::uint64_t{empty} << k;
+  }
+  append_bits(descriptor, plane * cells, occupied);
+  append_bits(descriptor, depth_begin + plane * pairs, comparison_bits(depth));
+  append_bits(descriptor, density_begin + plane * pairs, comparison_bits(density) & ~empty_pairs);
 }
 
-IGSP_MULTIVERSION void project(const Support& support, const Eigen::Matrix3f& to_cells, std::vector<float>& a,
+IGSP_MULTIVERSION void project(const SupportView& support, const Eigen::Matrix3f& to_cells, std::vector<float>& a,
                                std::vector<float>& b, std::vector<float>& c) {
-  const std::size_t size = support.size();
+  const std::size_t size = support.size;
   a.resize(size), b.resize(size), c.resize(size);
-  const float *x = support.x.data(), *y = support.y.data(), *z = support.z.data();
+  const float *x = support.x, *y = support.y, *z = support.z;
   float *pa = a.data(), *pb = b.data(), *pc = c.data();
   const float m00 = to_cells(0, 0), m01 = to_cells(0, 1), m02 = to_cells(0, 2);
   const float m10 = to_cells(1, 0), m11 = to_cells(1, 1), m12 = to_cells(1, 2);
@@ -162,9 +173,9 @@ IGSP_MULTIVERSION void project(const Support& support, const Eigen::Matrix3f& to
 
 }  // namespace
 
-Descriptor binary_shape_context(const Support& support, const Eigen::Matrix3d& frame, double descriptor_radius) {
+Descriptor binary_shape_context(const SupportView& support, const Eigen::Matrix3d& frame, double descriptor_radius) {
   Descriptor descriptor{};
-  if (support.size() == 0) return descriptor;
+  if (support.size == 0) return descriptor;
   const double u = 2 * descriptor_radius / side;
   std::vector<float> a, b, c;
   project(support, (frame.transpose() / u).cast<float>(), a, b, c);
@@ -172,8 +183,10 @@ Descriptor binary_shape_context(const Support& support, const Eigen::Matrix3d& f
       {{a.data(), b.data(), c.data()}, {a.data(), c.data(), b.data()}, {b.data(), c.data(), a.data()}}};
   for (int plane = 0; plane < planes; ++plane) {
     Patches patches{};
-    accumulate(axes[plane][0], axes[plane][1], axes[plane][2], support.size(), patches);
-    describe_plane(sum_patches(patches), plane, support.size(), descriptor);
+    CellSums sums;
+    accumulate(axes[plane][0], axes[plane][1], axes[plane][2], support.size, patches);
+    sum_patches(patches, sums);
+    describe_plane(sums, plane, support.size, descriptor);
   }
   return descriptor;
 }
@@ -199,14 +212,12 @@ std::vector<Descriptor> sign_variants(std::span<const Descriptor> descriptors, i
   return result;
 }
 
-std::vector<Descriptor> describe_in_frame(const PointGrid& grid, PointView places, const Eigen::Matrix3d& frame,
+std::vector<Descriptor> describe_in_frame(const SupportTable& supports, const Eigen::Matrix3d& frame,
                                           double descriptor_radius, int threads) {
-  std::vector<Descriptor> descriptors(places.size());
-  parallel_blocks(places.size(), threads, 32, [&](std::size_t begin, std::size_t end) {
-    Support support;
+  std::vector<Descriptor> descriptors(supports.size());
+  parallel_blocks(supports.size(), threads, 32, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      gather_support(grid, places[i], descriptor_radius, support);
-      descriptors[i] = binary_shape_context(support, frame, descriptor_radius);
+      descriptors[i] = binary_shape_context(supports[i], frame, descriptor_radius);
     }
   });
   return descriptors;

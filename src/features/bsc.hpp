@@ -11,7 +11,7 @@ namespace igsp {
 /// Binary Shape Context of a support seen in a frame (columns x, y, n): for each of the three coordinate planes the
 /// occupancy of 7 x 7 cells, and for 48 pairs of cells whether their difference in depth and in density stands out
 /// (Dong et al. 2017, as specified in docs/method.md). Depth is signed, so that turning the frame's signs permutes bits.
-Descriptor binary_shape_context(const Support& support, const Eigen::Matrix3d& frame, double descriptor_radius);
+Descriptor binary_shape_context(const SupportView& support, const Eigen::Matrix3d& frame, double descriptor_radius);
 
 /// Descriptor in the frame with the signs of frame flip 0..3 (bsc_layout.hpp), by permuting bits: no point is touched.
 Descriptor flipped(const Descriptor& descriptor, int frame_flip);
@@ -20,7 +20,7 @@ Descriptor flipped(const Descriptor& descriptor, int frame_flip);
 std::vector<Descriptor> sign_variants(std::span<const Descriptor> descriptors, int variants);
 
 /// Descriptors of many places in one common frame: no local frame takes part.
-std::vector<Descriptor> describe_in_frame(const PointGrid& grid, PointView places, const Eigen::Matrix3d& frame,
+std::vector<Descriptor> describe_in_frame(const SupportTable& supports, const Eigen::Matrix3d& frame,
                                           double descriptor_radius, int threads);
 
 }  // namespace igsp

@@ -34,11 +34,9 @@ Eigen::Matrix3d reference_frame(const Support& support, double descriptor_radius
 }
 
 Eigen::Matrix3d levelled_reference_frame(const Support& support, double descriptor_radius) {
-  const Eigen::Matrix2d covariance = weighted_covariance(support, descriptor_radius).topLeftCorner<2, 2>();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance);
-  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
-  frame.col(0).head<2>() = solver.eigenvectors().col(1);
-  frame.col(1) = frame.col(2).cross(frame.col(0));
+  const Eigen::Matrix3d c = weighted_covariance(support, descriptor_radius);
+  const double azimuth = 0.5 * std::atan2(2 * c(0, 1), c(0, 0) - c(1, 1));  // of the larger principal axis in xy
+  Eigen::Matrix3d frame = Eigen::AngleAxisd(azimuth, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   return frame;
 }
 

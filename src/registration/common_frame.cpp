@@ -46,8 +46,9 @@ CommonFrame::CommonFrame(const PreparedCloud& source, const PreparedCloud& targe
       target_(target),
       descriptor_radius_(descriptor_radius),
       threads_(threads),
-      target_descriptors_(
-          describe_in_frame(target.grid, target.keypoints, Eigen::Matrix3d::Identity(), descriptor_radius, threads)) {}
+      source_supports_(gather_supports(source.grid, source.keypoints, descriptor_radius)),
+      target_descriptors_(describe_in_frame(gather_supports(target.grid, target.keypoints, descriptor_radius),
+                                            Eigen::Matrix3d::Identity(), descriptor_radius, threads)) {}
 
 const std::vector<Descriptor>& CommonFrame::source_descriptors(const Eigen::Matrix3d& target_from_source) {
   for (const Cached& cached : cache_) {
@@ -55,8 +56,7 @@ const std::vector<Descriptor>& CommonFrame::source_descriptors(const Eigen::Matr
   }
   // The target's axes, seen in the source: the columns of R^T.
   cache_.push_back({target_from_source,
-                    describe_in_frame(source_.grid, source_.keypoints, target_from_source.transpose(),
-                                      descriptor_radius_, threads_)});
+                    describe_in_frame(source_supports_, target_from_source.transpose(), descriptor_radius_, threads_)});
   return cache_.back().descriptors;
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "estimation/rigid_fit.hpp"
+#include "features/support.hpp"
 #include "registration/prepared_cloud.hpp"
 
 namespace igsp {
@@ -32,6 +33,7 @@ class CommonFrame {
   const PreparedCloud& target_;
   double descriptor_radius_;
   int threads_;
+  SupportTable source_supports_;
   std::vector<Descriptor> target_descriptors_;
   std::vector<Cached> cache_;
 };
