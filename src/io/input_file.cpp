@@ -25,7 +25,8 @@ InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
   errno = 0;
   stream_.open(path, std::ios::binary);
   if (!stream_) fail("cannot open: " + std::generic_category().message(errno));
-  buffer_.resize(buffer_size);
+  buffer_.resize(
+      static_cast<std::size_t>(std::min<std::uint64_t>(buffer_size, size_ + 1)));  // never full of a small file
 }
 
 bool InputFile::refill() {

@@ -1,5 +1,5 @@
 #include <fmt/format.h>
-#include <liblzf/lzf.h>
+#include <lzf.h>
 
 #include <cstdint>
 #include <limits>

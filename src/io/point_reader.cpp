@@ -61,10 +61,10 @@ PointReader::PointReader(PointReader&&) noexcept = default;
 PointReader& PointReader::operator=(PointReader&&) noexcept = default;
 
 PointView PointReader::next_chunk() {
-  auto& [file, body, chunk] = *implementation_;
-  chunk.points.clear();
-  std::visit([&](auto& records) { records.fill(file, chunk); }, body.records);
-  return chunk.points;
+  Implementation& state = *implementation_;
+  state.chunk.points.clear();
+  std::visit([&](auto& records) { records.fill(state.file, state.chunk); }, state.body.records);
+  return state.chunk.points;
 }
 
 FileFormat PointReader::format() const {
