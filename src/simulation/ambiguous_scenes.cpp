@@ -13,8 +13,9 @@ Primitives hollow_box(double length, double width, double height) {
   const Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
   const Vector3d x{length, 0, 0}, y{0, width, 0}, z{0, 0, height};
   const Vector3d low{-0.5 * length, -0.5 * width, 0}, high{0.5 * length, 0.5 * width, height};
-  return {make_parallelogram(at, low, x, y),   make_parallelogram(at, low, x, z),   make_parallelogram(at, low, y, z),
-          make_parallelogram(at, high, -x, -y), make_parallelogram(at, high, -x, -z), make_parallelogram(at, high, -y, -z)};
+  return {make_parallelogram(at, low, x, y),    make_parallelogram(at, low, x, z),
+          make_parallelogram(at, low, y, z),    make_parallelogram(at, high, -x, -y),
+          make_parallelogram(at, high, -x, -z), make_parallelogram(at, high, -y, -z)};
 }
 
 Scene terrestrial(const Primitives& surfaces, double half_x, double half_y) {
@@ -51,7 +52,8 @@ Scene build_plane(Random& random) {
 
 Scene build_sphere(Random& random) {
   const double radius = random.uniform(0.08, 0.12);
-  return on_the_table(make_ellipsoid(Vector3d::Zero(), Eigen::Matrix3d::Identity(), Vector3d::Constant(radius)), radius);
+  const Eigen::Matrix3d upright = Eigen::Matrix3d::Identity();
+  return on_the_table(make_ellipsoid(Vector3d::Zero(), upright, Vector3d::Constant(radius)), radius);
 }
 
 Scene build_cylinder(Random& random) {

@@ -19,7 +19,8 @@ void add_balcony(Primitives& surfaces, const Isometry3d& at, const Opening& open
     surfaces.push_back(make_box(at, {x, 0.5 * out, z + 1.1}, {0.06, -out, 0.06}));
   }
   for (double x = left; x <= right + 0.01; x += width / 12.0) {
-    surfaces.push_back(make_frustum(at * Vector3d{x, out + 0.03, z}, at * Vector3d{x, out + 0.03, z + 1.1}, 0.02, 0.02));
+    const Vector3d foot{x, out + 0.03, z};
+    surfaces.push_back(make_frustum(at * foot, at * (foot + 1.1 * Vector3d::UnitZ()), 0.02, 0.02));
   }
 }
 
@@ -58,8 +59,8 @@ void add_floor(Primitives& surfaces, const Isometry3d& at, double length, double
       continue;
     }
     add_window(surfaces, at, openings[i], 0.2, random.integer(0, 2));
-    const double width = openings[i].end - openings[i].begin + 0.2;
-    surfaces.push_back(make_box(at, {middle(openings[i], 0).x(), -0.05, openings[i].bottom - 0.04}, {width, 0.25, 0.08}));
+    const double width = openings[i].end - openings[i].begin, x = openings[i].begin + 0.5 * width;
+    surfaces.push_back(make_box(at, {x, -0.05, openings[i].bottom - 0.04}, {width + 0.2, 0.25, 0.08}));  // sill
     if (!ground && random.chance(0.12)) add_balcony(surfaces, at, openings[i]);
   }
 }

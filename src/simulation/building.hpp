@@ -20,7 +20,8 @@ void add_wall(Primitives& surfaces, const Eigen::Isometry3d& at, double length, 
 void add_window(Primitives& surfaces, const Eigen::Isometry3d& at, const Opening& opening, double recess, int bars);
 
 /// A leaf hinged at one side of an opening, turned by `angle` radians (0: closed).
-void add_door(Primitives& surfaces, const Eigen::Isometry3d& at, const Opening& opening, double angle, bool hinge_at_end);
+void add_door(Primitives& surfaces, const Eigen::Isometry3d& at, const Opening& opening, double angle,
+              bool hinge_at_end);
 
 /// A building with a front of `length` along x of `at`, facing -y: two to four floors of unequal windows with sills,
 /// ledges, a door with steps, some balconies, drainpipes and a roof.

@@ -39,7 +39,8 @@ void add_table(Primitives& surfaces, const Isometry3d& at, Footprint size, doubl
     surfaces.push_back(make_box(middle, {0, 0, height - 0.02}, {size.width, size.depth, 0.04}));
     for (const double x : {-0.46, 0.46}) {
       for (const double y : {-0.44, 0.44}) {
-        surfaces.push_back(make_box(middle, {x * size.width, y * size.depth, 0.5 * height - 0.02}, {0.06, 0.06, height - 0.04}));
+        const Vector3d leg{x * size.width, y * size.depth, 0.5 * height - 0.02};
+        surfaces.push_back(make_box(middle, leg, {0.06, 0.06, height - 0.04}));
       }
     }
   }

@@ -12,7 +12,8 @@ struct Footprint {
   double width, depth;
 };
 
-void add_table(Primitives& surfaces, const Eigen::Isometry3d& at, Footprint size, double height, bool round, Random& random);
+void add_table(Primitives& surfaces, const Eigen::Isometry3d& at, Footprint size, double height, bool round,
+               Random& random);
 void add_chair(Primitives& surfaces, const Eigen::Isometry3d& at, Random& random);
 void add_desk(Primitives& surfaces, const Eigen::Isometry3d& at, Footprint size, Random& random);
 void add_shelf(Primitives& surfaces, const Eigen::Isometry3d& at, Footprint size, double height, Random& random);

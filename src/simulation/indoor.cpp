@@ -141,14 +141,17 @@ void furnish(Primitives& surfaces, Room& room, Random& random) {
   add_tall_pieces(surfaces, room, pieces(0.16), random);
   if (random.chance(0.4)) {
     const Footprint size{random.uniform(1.4, 2.2), 0.85};
-    if (const auto frame = place_at_wall(room, tall_wall(random), size, random)) add_sofa(surfaces, *frame, size, random);
+    const auto frame = place_at_wall(room, tall_wall(random), size, random);
+    if (frame) add_sofa(surfaces, *frame, size, random);
   }
   if (const auto frame = place_at_wall(room, window_wall, {1.2, 0.15}, random)) add_radiator(surfaces, *frame, 1.1);
   for (int i = random.integer(0, 2); i > 0; --i) {
-    if (const auto frame = place_at_wall(room, tall_wall(random), {0.5, 0.5}, random)) add_potted_plant(surfaces, *frame, random);
+    const auto frame = place_at_wall(room, tall_wall(random), {0.5, 0.5}, random);
+    if (frame) add_potted_plant(surfaces, *frame, random);
   }
   for (int i = random.integer(1, 3); i > 0; --i) {
-    if (const auto frame = place_at_wall(room, tall_wall(random), {1.4, 0.05}, random)) add_picture(surfaces, *frame, random);
+    const auto frame = place_at_wall(room, tall_wall(random), {1.4, 0.05}, random);
+    if (frame) add_picture(surfaces, *frame, random);
   }
   for (int i = pieces(0.06); i > 0; --i) {  // boxes left on the floor
     const double a = random.uniform(0.25, 0.6), b = random.uniform(0.25, 0.5), c = random.uniform(0.2, 0.6);
@@ -191,7 +194,8 @@ std::vector<Opening> add_room_windows(Primitives& surfaces, const Isometry3d& ou
 
 /// One side of the corridor in the frame `side` (x along the corridor, y away from it): rooms, walls, doors, windows.
 /// The corridor's floor before each door is kept free; `mirrored` says that the corridor's frame runs the other way.
-void add_side(Primitives& surfaces, const Isometry3d& side, double height, Room& corridor, bool mirrored, Random& random) {
+void add_side(Primitives& surfaces, const Isometry3d& side, double height, Room& corridor, bool mirrored,
+              Random& random) {
   const double length = corridor.width, depth = random.uniform(4.0, 6.5);
   const Isometry3d outer = side * Eigen::Translation3d(0, inner_wall + depth, 0);
   std::vector<Opening> doors, windows;
@@ -229,7 +233,8 @@ void add_corridor(Primitives& surfaces, Room& corridor, Random& random) {
     const auto frame = place_at_wall(corridor, random.chance(0.5) ? corridor_wall : window_wall, {width, 0.4}, random);
     if (frame) add_cabinet(surfaces, *frame, {width, 0.4}, height, random);
   }
-  if (const auto frame = place_at_wall(corridor, window_wall, {0.5, 0.5}, random)) add_potted_plant(surfaces, *frame, random);
+  const auto plant = place_at_wall(corridor, window_wall, {0.5, 0.5}, random);
+  if (plant) add_potted_plant(surfaces, *plant, random);
   const double y = random.uniform(0.3, corridor.depth - 0.3), z = corridor.height - random.uniform(0.2, 0.35);
   surfaces.push_back(make_box(corridor.at, {0.5 * corridor.width, y, z}, {corridor.width, 0.35, 0.25}));  // air duct
   add_ceiling(surfaces, corridor, random);
@@ -261,7 +266,8 @@ Scene build_indoor(Random& random) {
 
   Scene scene;
   scene.surfaces = BoundingVolumeHierarchy(surfaces);
-  scene.station_area = AlignedBox2d(Vector2d{-0.5 * length, -0.5 * width - 6.5}, Vector2d{0.5 * length, 0.5 * width + 6.5});
+  const Vector2d corner{0.5 * length, 0.5 * width + 6.5};
+  scene.station_area = AlignedBox2d(-corner, corner);
   scene.station_distance = random.uniform(3.0, 5.0);
   scene.max_range = 40.0;
   scene.min_clearance = 0.45;

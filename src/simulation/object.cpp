@@ -31,11 +31,17 @@ void add_limb(Field& field, Vector3d at, Vector3d direction, double radius, Rand
   }
 }
 
+/// Where a walk from inside the body leaves it.
+Vector3d surface_along(const Field& field, Vector3d at, const Vector3d& direction) {
+  while (field.box().contains(at) && field.value(field.nearest(at)) > iso_level) at += 0.02 * direction;
+  return at;
+}
+
 /// Folds and chisel marks: waves in the field, which shift the surface by a little.
 void add_texture(Field& field, Random& random) {
-  for (int i = 0; i < 5; ++i) {
-    const Vector3d wave = random.direction() * random.uniform(8.0, 30.0);
-    const double phase = random.angle(), depth = random.uniform(0.005, 0.02);
+  for (int i = 0; i < 8; ++i) {
+    const double frequency = random.uniform(8.0, 40.0), phase = random.angle(), depth = random.uniform(0.005, 0.018);
+    const Vector3d wave = frequency * random.direction();
     field.visit(field.box(), [&](const Vector3d& p, float& value) {
       if (value > 0.0f) value += static_cast<float>(depth * std::sin(wave.dot(p) + phase));
     });
@@ -55,9 +61,9 @@ Field make_body(Random& random) {
     const Vector3d from = body[random.integer(0, static_cast<int>(body.size()) - 1)], direction = random.direction();
     add_limb(field, from + 0.5 * direction, direction, random.uniform(0.3, 0.55), random);
   }
-  for (int i = random.integer(8, 20); i > 0; --i) {  // warts and ears
-    const Vector3d at = body[0] + random.uniform(0.5, 0.8) * random.direction();
-    const double a = random.uniform(0.1, 0.25), b = random.uniform(0.1, 0.35);
+  for (int i = random.integer(4, 20); i > 0; --i) {  // warts and ears
+    const Vector3d at = surface_along(field, body[0], random.direction());
+    const double a = random.uniform(0.12, 0.3), b = random.uniform(0.12, 0.4);
     add_blob(field, at, random.rotation(), Vector3d{a, a, b});
   }
   add_texture(field, random);

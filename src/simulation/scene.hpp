@@ -25,6 +25,8 @@ struct Scene {
   double max_range = 80.0;
   double min_clearance = 0.6;     ///< nothing stands nearer to a station
   double station_distance = 5.0;  ///< between neighbouring stations
+  /// Neighbouring stations see this share of each other's points, between the bounds where the scene allows.
+  double min_visibility = 0.6, max_visibility = 0.8;
   Eigen::AlignedBox2d station_area;  ///< where stations may stand
   std::function<double(double x, double y)> ground = [](double, double) { return 0.0; };
   double radius = 0.0;  ///< range camera and noise: everything lies in this sphere around the origin

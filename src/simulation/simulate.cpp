@@ -25,7 +25,7 @@ void validate(const SimulationOptions& options) {
           fmt::format("[1, {}]", max_points));
   const double noise = options.noise.value_or(0.0), distance = options.station_distance;
   require(std::isfinite(noise) && noise >= 0.0, "noise", noise, "[0, infinity)");
-  require(std::isfinite(distance) && distance >= 0.0, "station_distance", distance, "[0, infinity), 0: the scene's own");
+  require(std::isfinite(distance) && distance >= 0.0, "station_distance", distance, "[0, infinity)");
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ constexpr double same_surface = 0.02;      // a line of sight may end this share
 constexpr double same_surface_min = 0.15;  // ... or this much [m]: leaves of one clump count as one surface
 constexpr int probe_rays = 600;
 constexpr int places_per_station = 24;
-constexpr int restarts = 12;
+constexpr int restarts = 24;
 
 bool is_free(const Scene& scene, const Vector3d& sensor) {
   for (int i = 0; i < 24; ++i) {
@@ -72,7 +72,8 @@ bool extend(const Scene& scene, double distance, double wanted, Random& random, 
   Vector3d chosen;
   for (int i = 0; i < places_per_station; ++i) {
     const double azimuth = random.angle();
-    const auto place = sensor_at(scene, last.x() + distance * std::cos(azimuth), last.y() + distance * std::sin(azimuth));
+    const double dx = distance * std::cos(azimuth), dy = distance * std::sin(azimuth);
+    const auto place = sensor_at(scene, last.x() + dx, last.y() + dy);
     if (!place) continue;
     double nearest = distance;
     for (const Vector3d& other : chain.sensors) nearest = std::min(nearest, (*place - other).norm());
@@ -104,7 +105,7 @@ std::optional<Chain> walk(const Scene& scene, int count, double distance, double
 }
 
 std::vector<Transformation> place_scanners(const Scene& scene, int count, double distance, Random& random) {
-  const double wanted = random.uniform(0.5, 0.85), good_enough = 0.06;
+  const double wanted = random.uniform(scene.min_visibility, scene.max_visibility), good_enough = 0.06;
   std::optional<Chain> best;
   for (int i = 0; i < restarts && (!best || best->worst > good_enough); ++i) {
     const auto chain = walk(scene, count, distance, wanted, random);

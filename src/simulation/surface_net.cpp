@@ -53,9 +53,10 @@ std::vector<Triangle> surface_net(const Field& field, double level) {
         // The three edges from this cell's lowest corner; the cells around each were all visited by now.
         const std::size_t x = field.index(1, 0, 0), y = field.index(0, 1, 0), z = field.index(0, 0, 1);
         const bool inside = field.value(self) > level;
-        if (j > 0 && k > 0 && inside != (field.value(self + x) > level)) add_quad(self, self - y, self - y - z, self - z);
-        if (i > 0 && k > 0 && inside != (field.value(self + y) > level)) add_quad(self, self - x, self - x - z, self - z);
-        if (i > 0 && j > 0 && inside != (field.value(self + z) > level)) add_quad(self, self - x, self - x - y, self - y);
+        const auto crosses = [&](std::size_t step) { return inside != (field.value(self + step) > level); };
+        if (j > 0 && k > 0 && crosses(x)) add_quad(self, self - y, self - y - z, self - z);
+        if (i > 0 && k > 0 && crosses(y)) add_quad(self, self - x, self - x - z, self - z);
+        if (i > 0 && j > 0 && crosses(z)) add_quad(self, self - x, self - x - y, self - y);
       }
     }
   }

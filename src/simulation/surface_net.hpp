@@ -16,6 +16,10 @@ class Field {
   const Eigen::AlignedBox3d& box() const { return box_; }
   int nodes() const { return nodes_; }
   std::size_t index(int i, int j, int k) const { return (std::size_t(k) * nodes_ + j) * nodes_ + i; }
+  std::size_t nearest(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3i node = ((point - box_.min()) / step_).array().round().cast<int>();
+    return index(node.x(), node.y(), node.z());
+  }
   double value(std::size_t index) const { return values_[index]; }
   Eigen::Vector3d position(int i, int j, int k) const { return box_.min() + step_ * Eigen::Vector3d(i, j, k); }
 

@@ -79,8 +79,9 @@ void add_conifer(Primitives& surfaces, const Vector3d& foot, Random& random) {
     const double reach = skirt * (1.0 - share) / (1.0 - lowest) + 0.2, offset = random.angle();
     for (int i = 0; i < branches; ++i) {
       const double azimuth = offset + 2.0 * std::numbers::pi * i / branches + 0.15 * random.normal();
-      const auto branch = add_limb(surfaces, along(trunk, share), sideways(azimuth, random.uniform(-0.35, 0.05)),
-                                   reach * random.uniform(0.8, 1.1), 0.15 * radius, 0.05 * radius, 2, 0.08, random);
+      const double droop = random.uniform(-0.35, 0.05), length = reach * random.uniform(0.8, 1.1);
+      const auto branch = add_limb(surfaces, along(trunk, share), sideways(azimuth, droop), length, 0.15 * radius,
+                                   0.05 * radius, 2, 0.08, random);
       for (double out = 0.35; out < 1.01; out += 0.22) {
         add_clump(surfaces, along(branch, std::min(out, 1.0)), 0.12 * reach + 0.1, 5, 0.16, random);
       }
