@@ -61,7 +61,9 @@ void add_to_histograms(std::span<const std::uint16_t> distances, std::array<Feat
 void append_below(std::span<const std::uint16_t> distances, std::uint16_t limit, std::size_t source,
                   std::vector<FeaturePair>& pairs) {
   std::size_t size = pairs.size();
-  pairs.resize(size + distances.size());
+  const std::size_t below = std::count_if(distances.begin(), distances.end(), [&](std::uint16_t d) { return d < limit; });
+  if (below == 0) return;
+  pairs.resize(size + below + 1);  // one to spare, since pairs that fail are written too
   for (std::size_t j = 0; j < distances.size(); ++j) {  // no branch: which pairs pass cannot be predicted
     pairs[size] = {static_cast<std::uint32_t>(source), static_cast<std::uint32_t>(j), distances[j]};
     size += distances[j] < limit;

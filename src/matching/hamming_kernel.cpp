@@ -12,9 +12,11 @@
 #if defined(__GNUC__)
 #define IGSP_INLINE inline __attribute__((always_inline))
 #define IGSP_RESTRICT __restrict__
+#define IGSP_UNROLL _Pragma("GCC unroll 28")
 #else
 #define IGSP_INLINE inline
 #define IGSP_RESTRICT
+#define IGSP_UNROLL
 #endif
 
 namespace igsp {
@@ -83,6 +85,7 @@ struct CountByAdders {
 struct CountByInstruction {
   static IGSP_INLINE Piece count(const Piece (&d)[TargetBlocks::pieces]) {
     Piece sum = 0;
+    IGSP_UNROLL
     for (std::size_t p = 0; p < TargetBlocks::pieces; ++p) sum += static_cast<Piece>(std::popcount(d[p]));
     return sum;
   }
@@ -103,9 +106,7 @@ IGSP_INLINE void compute_row(const Row& row) {
     for (const Pieces& variant : row.variants) {
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         Piece difference[TargetBlocks::pieces];
-#if defined(__GNUC__)
-#pragma GCC unroll 28
-#endif
+        IGSP_UNROLL
         for (std::size_t p = 0; p < TargetBlocks::pieces; ++p) {
           difference[p] = static_cast<Piece>(block.piece[p][lane] ^ variant[p]);
         }
