@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 struct AlignSettings {
   fs::path source, target;
   fs::path aligned, transformation, report;  // empty: not wanted
-  std::size_t max_points = 20'000'000;
+  std::int64_t max_points = 20'000'000;
   bool force = false, quiet = false, verbose = false;
   std::shared_ptr<OptionFlags> option_flags;
 };
@@ -76,11 +76,12 @@ std::vector<std::string> warnings_about(const CloudInput& source, const CloudInp
 }
 
 // A cloud that was too large to keep whole is replaced by the centroids of a voxel filter four times finer than the
-// method's own, read from the file in chunks.
-void stream_large_clouds(CloudInput& source, CloudInput& target, Options& options, const ProgressCallback& progress) {
+// method's own, read from the file in chunks. The thinned clouds only tell how fine; the method chooses its voxel size
+// from the centroids.
+void stream_large_clouds(CloudInput& source, CloudInput& target, const ScaleOptions& options,
+                         const ProgressCallback& progress) {
   if (source.whole() && target.whole()) return;
-  options.scale.voxel_size = choose_voxel_size(source.points, target.points, options.scale);
-  const double fine = options.scale.voxel_size / 4.0;
+  const double fine = choose_voxel_size(source.points, target.points, options) / 4.0;
   if (!source.whole()) source.points = read_centroids(source, fine, "filter source", progress);
   if (!target.whole()) target.points = read_centroids(target, fine, "filter target", progress);
 }
@@ -119,27 +120,34 @@ void write_outputs(const AlignSettings& settings, const Result& result, const Js
 
 int run_align(const AlignSettings& settings) {
   const double start = now_s();
-  Options options = resolve(*settings.option_flags);
+  const Options options = resolve(*settings.option_flags);
+  if (settings.max_points < 1000) {
+    throw InvalidArgument(fmt::format("--max-points is {}; it must be at least 1000", settings.max_points));
+  }
   check_outputs(settings);
   ProgressBar bar(!settings.quiet);
   const ProgressCallback progress = bar.callback();
-  CloudInput source = read_cloud(settings.source, settings.max_points, "read source", progress);
-  CloudInput target = read_cloud(settings.target, settings.max_points, "read target", progress);
+  const auto max_points = static_cast<std::size_t>(settings.max_points);
+  CloudInput source = read_cloud(settings.source, max_points, "read source", progress);
+  CloudInput target = read_cloud(settings.target, max_points, "read target", progress);
   if (!source.whole() && !settings.aligned.empty()) {
     throw InvalidArgument(fmt::format("-o needs all points in memory: {} has {}, --max-points is {}",
                                       source.path.string(), source.total, settings.max_points));
   }
   const std::vector<std::string> warnings = warnings_about(source, target);
-  stream_large_clouds(source, target, options, progress);
+  stream_large_clouds(source, target, options.scale, progress);
   const double read = now_s();
   Result result = align(source.points, target.points, options, progress);
   stop_if_interrupted();
   bar.finish();
+  result.source.points = source.total;
+  result.target.points = target.total;
   result.timings_s.insert(result.timings_s.begin(), {"read", read - start});
   for (const std::string& warning : warnings) {
     if (!settings.quiet) std::cerr << "igsp: warning: " << warning << "\n";
   }
-  std::cout << answer_text(result, now_s() - start, settings.verbose);
+  std::cout << answer_text(result, options.scale.voxel_size > 0.0, now_s() - start);
+  if (settings.verbose) std::cout << details_text(result);
   write_outputs(settings, result, align_report(result, source, target, warnings), source);
   return result.registered ? exit_registered : exit_not_registered;
 }
@@ -169,8 +177,7 @@ void add_align_command(CLI::App& app, Command& command) {
   align->add_option("--max-points", settings->max_points,
                     wrapped("a cloud with more points is streamed through the voxel filter instead of kept whole; "
                             "default 20000000"))
-      ->type_name("INTEGER")
-      ->check(CLI::PositiveNumber);
+      ->type_name("INTEGER");
   CLI::Option* quiet = align->add_flag("--quiet", settings->quiet, "no progress and no warnings, only the answer");
   align->add_flag("--verbose", settings->verbose, "also a line per iteration and per stage")->excludes(quiet);
   settings->option_flags = add_option_flags(*align);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <numbers>
 
 namespace igsp::cli {
@@ -33,15 +35,20 @@ std::string cloud_line(std::string_view name, const CloudSummary& cloud) {
 }  // namespace
 
 std::string matrix_text(const Transformation& transformation) {
-  std::string text;
-  for (int i = 0; i < 4; ++i) {
-    const auto row = transformation.matrix().row(i);
-    text += fmt::format("{:>25.17g} {:>25.17g} {:>25.17g} {:>25.17g}\n", row[0], row[1], row[2], row[3]);
+  std::array<std::string, 4> lines;
+  for (int column = 0; column < 4; ++column) {
+    std::array<std::string, 4> numbers;
+    std::size_t width = 0;
+    for (int row = 0; row < 4; ++row) {
+      numbers[row] = fmt::format("{}", transformation.matrix()(row, column));
+      width = std::max(width, numbers[row].size());
+    }
+    for (int row = 0; row < 4; ++row) lines[row] += fmt::format("  {:>{}}", numbers[row], width);
   }
-  return text;
+  return fmt::format("{}\n", fmt::join(lines, "\n"));
 }
 
-std::string answer_text(const Result& result, double seconds, bool verbose) {
+std::string answer_text(const Result& result, bool voxel_size_given, double seconds) {
   std::string text = fmt::format("{}: {}\n", result.registered ? "registered" : "not registered", result.reason);
   if (result.has_estimate) {
     text += result.registered ? "target_from_source\n" : "best estimate of target_from_source, not to be relied on\n";
@@ -51,12 +58,12 @@ std::string answer_text(const Result& result, double seconds, bool verbose) {
     text += fmt::format("RMSE        {:.4g}\n", result.rmse);
   }
   text += fmt::format("voxel size  {:.6g} ({})\n", result.voxel_size,
-                      result.options.scale.voxel_size > 0 ? "given" : "chosen from both clouds");
+                      voxel_size_given ? "given" : "chosen from both clouds");
   text += cloud_line("source", result.source) + cloud_line("target", result.target);
   text += fmt::format("iterations  {} ({})\n", result.iterations.size(), to_string(result.termination));
-  text += fmt::format("time        {:.2f} s\n", seconds);
-  if (verbose) text += iteration_table(result) + timing_table(result);
-  return text;
+  return text + fmt::format("time        {:.2f} s\n", seconds);
 }
+
+std::string details_text(const Result& result) { return iteration_table(result) + timing_table(result); }
 
 }  // namespace igsp::cli

@@ -6,11 +6,13 @@
 
 namespace igsp::cli {
 
-/// Four lines; the numbers read back as the same doubles.
+/// Four lines in aligned columns; the numbers read back as the same doubles.
 std::string matrix_text(const Transformation& transformation);
 
-/// What `igsp align` prints: verdict, transformation and the evidence. `seconds` is the time of the whole run;
-/// `verbose` adds a line per iteration and per stage.
-std::string answer_text(const Result& result, double seconds, bool verbose);
+/// What `igsp align` prints: verdict, transformation and the evidence. `seconds` is the time of the whole run.
+std::string answer_text(const Result& result, bool voxel_size_given, double seconds);
+
+/// What `--verbose` adds: a line per iteration and per stage.
+std::string details_text(const Result& result);
 
 }  // namespace igsp::cli

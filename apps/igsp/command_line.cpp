@@ -52,8 +52,9 @@ void reject_unknown_flags(const CLI::App& command, const std::vector<std::string
     const bool is_long = argument.starts_with("--");
     const std::string flag = is_long ? argument.substr(0, argument.find('=')) : argument.substr(0, 2);
     if (std::find(known.begin(), known.end(), flag) != known.end()) continue;
-    throw InvalidArgument(fmt::format("unknown flag {}; did you mean {}? (igsp {} --help lists all)",
-                                      is_long ? flag : argument, nearest_of(flag, known), command.get_name()));
+    throw InvalidArgument(fmt::format("unknown flag {}; did you mean {}? ({} --help lists all)",
+                                      is_long ? flag : argument, nearest_of(flag, known),
+                                      command.get_parent() ? "igsp " + command.get_name() : command.get_name()));
   }
 }
 
