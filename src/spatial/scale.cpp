@@ -14,7 +14,8 @@ namespace igsp {
 namespace {
 
 constexpr double max_voxels_per_point = 0.6;  // above it the voxels would only repeat the raw sampling
-constexpr int max_steps = 8;
+constexpr int max_steps = 16;                 // dense clouds need 3 to 5, those limited by their spacing up to 12
+constexpr double max_voxels_across = 1 << 19;  // what the voxel filter can hold: many points at few places ask for more
 
 // Number of occupied voxels by linear counting (Whang et al. 1990): n = -M ln(share of empty slots in a map of M).
 double count_voxels(PointView cloud, const Bounds& bounds, double voxel_size) {
@@ -71,7 +72,7 @@ double choose_voxel_size(PointView source, PointView target, const ScaleOptions&
     const double to_spacing = std::sqrt(std::max(n_source / (max_voxels_per_point * source.size()),
                                                  n_target / (max_voxels_per_point * target.size())));
     const double factor = std::max(to_count, to_spacing);
-    voxel_size *= factor;
+    voxel_size = std::max(factor * voxel_size, extent / max_voxels_across);
     if (std::abs(factor - 1) < 0.01) break;
   }
   return voxel_size;
