@@ -52,7 +52,7 @@ IGSP_MULTIVERSION Moments sphere_moments(const float* __restrict px, const float
   return {n, x, y, z, xx, xy, xz, yy, yz, zz};
 }
 
-void analyse(const Moments& m, std::uint32_t point, LocalPca& pca) {
+Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal_axes(const Moments& m) {
   const double n = m.n;
   const Eigen::Vector3d mean(m.x / n, m.y / n, m.z / n);
   Eigen::Matrix3d covariance;
@@ -60,6 +60,11 @@ void analyse(const Moments& m, std::uint32_t point, LocalPca& pca) {
   covariance = covariance / n - mean * mean.transpose();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(covariance);
+  return solver;
+}
+
+void analyse(const Moments& m, std::uint32_t point, LocalPca& pca) {
+  const auto solver = principal_axes(m);
   const Eigen::Vector3d l = solver.eigenvalues().cwiseMax(0.0);  // ascending
   const double sum = l.sum();
   pca.neighbours[point] = static_cast<std::uint32_t>(m.n);
@@ -105,6 +110,17 @@ LocalPca local_pca(const PointGrid& grid, double radius, int threads) {
     }
   });
   return pca;
+}
+
+Eigen::Vector3d local_normal(const PointGrid& grid, const Eigen::Vector3f& place, double radius) {
+  Moments m{};
+  grid.visit_sphere(place, static_cast<float>(radius), [&](std::uint32_t i, float) {
+    const float dx = grid.x[i] - place.x(), dy = grid.y[i] - place.y(), dz = grid.z[i] - place.z();
+    m.n += 1;
+    m.x += dx, m.y += dy, m.z += dz;
+    m.xx += dx * dx, m.xy += dx * dy, m.xz += dx * dz, m.yy += dy * dy, m.yz += dy * dz, m.zz += dz * dz;
+  });
+  return m.n < 3 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d(principal_axes(m).eigenvectors().col(0));
 }
 
 }  // namespace igsp

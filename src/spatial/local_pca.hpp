@@ -18,4 +18,7 @@ struct LocalPca {
 /// Cost is shared among the points of a cell, so `grid` should have cells of about half the radius.
 LocalPca local_pca(const PointGrid& grid, double radius, int threads);
 
+/// Normal of one place from the points within `radius` of it: eigenvector of l3, unit, sign arbitrary.
+Eigen::Vector3d local_normal(const PointGrid& grid, const Eigen::Vector3f& place, double radius);
+
 }  // namespace igsp

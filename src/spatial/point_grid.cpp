@@ -55,6 +55,15 @@ std::array<int, 3> PointGrid::cell_of(const Eigen::Vector3f& point) const {
 }
 
 std::int64_t PointGrid::nearest(const Eigen::Vector3f& centre, float radius) const {
+  // Most queries end close by: a small sphere first, and what it finds is the nearest of all.
+  for (float reach = std::min(radius, 0.4f * cell_size); reach < radius; reach *= 2.5f) {
+    const std::int64_t found = nearest_within(centre, reach);
+    if (found >= 0) return found;
+  }
+  return nearest_within(centre, radius);
+}
+
+std::int64_t PointGrid::nearest_within(const Eigen::Vector3f& centre, float radius) const {
   float best = radius * radius;
   std::int64_t nearest = -1;
   visit_runs(centre, radius, [&](std::uint32_t begin, std::uint32_t end) {
