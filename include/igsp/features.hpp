@@ -26,6 +26,7 @@ struct Features {
   Points points;                          ///< voxel centroids, local
   std::vector<float> curvature;           ///< per point: surface variation, [0, 1/3]
   Points normals;                         ///< per point: unit, sign arbitrary
+  Points fine_points;                     ///< centroids of finer voxels, local: what fine registration works on
   std::vector<std::uint32_t> keypoints;   ///< indices into `points`, by curvature descending
   std::vector<Eigen::Matrix3d> frames;    ///< per keypoint: columns x, y, n of the local reference frame
   std::vector<Descriptor> descriptors;    ///< per keypoint, in its frame

@@ -17,7 +17,8 @@ constexpr int first_hybrid_k = 4;
 constexpr double hybrid_fit_scale = 1.5;  // voxels
 
 constexpr std::array<double, 6> coarse_radii{3, 3, 2, 2, 1.5, 1.5};
-constexpr std::array<double, 10> fine_radii{3, 3, 2, 2, 1.5, 1.5, 1, 1, 1, 1};
+constexpr std::array<double, 5> fine_radii{3, 2, 1.5, 1.5, 1};
+constexpr double fine_normal_radius = 1.5;    // voxels
 constexpr std::size_t enough_agreeing = 15;
 constexpr double enough_agreement = 0.6;
 
@@ -62,9 +63,20 @@ LoopOutcome hybrid_loop(CommonFrame& frame, const Transformation& initial, int i
   return igsp_loop(input, initial, {first_hybrid_k, iterations, hybrid_fit_scale, common_frame_bounds}, options);
 }
 
-Transformation point_to_plane(const CommonFrame& frame, const Transformation& initial, std::size_t points,
-                              std::span<const double> radii, const Options& options) {
-  return refine_point_to_plane(frame.source(), frame.target(), initial, {points, radii, options.degrees_of_freedom});
+// A short refinement on the voxel centroids, before hypotheses are compared.
+Transformation settle(Surface& source, Surface& target, const Transformation& initial, double voxel_size,
+                      const Options& options) {
+  return refine_point_to_plane(source, target, initial, {800, coarse_radii, 0, voxel_size, options.degrees_of_freedom});
+}
+
+// Down to the noise of the scanner, on the finer voxels.
+Transformation refine(const CommonFrame& frame, const Transformation& initial, const Options& options) {
+  const Features &source = frame.source().features, &target = frame.target().features;
+  const double v = target.voxel_size;
+  Surface fine_source(source.fine_points, PointGrid(source.fine_points, v), fine_normal_radius * v);
+  Surface fine_target(target.fine_points, PointGrid(target.fine_points, v), fine_normal_radius * v);
+  return refine_point_to_plane(fine_source, fine_target, initial,
+                               {4000, fine_radii, 10, v, options.degrees_of_freedom});
 }
 
 }  // namespace
@@ -78,11 +90,14 @@ SearchOutcome hypotheses_search(CommonFrame& frame, const Options& options, Stag
   if (screened.empty()) return outcome;
 
   clock.start("ranking");
+  const double v = frame.target().features.voxel_size;
+  Surface source(frame.source().features.points, frame.source().grid, frame.source().features.normals);
+  Surface target(frame.target().features.points, frame.target().grid, frame.target().features.normals);
   double best_score = -1;
   for (const Rematch& candidate : screened) {
     clock.report(0.5);
     const LoopOutcome loop = hybrid_loop(frame, candidate.target_from_source, 3, options);
-    const Transformation pose = point_to_plane(frame, loop.target_from_source, 1500, coarse_radii, options);
+    const Transformation pose = settle(source, target, loop.target_from_source, v, options);
     const double score = ranking_score(frame, pose);
     if (score > best_score) {
       best_score = score;
@@ -102,7 +117,7 @@ SearchOutcome hypotheses_search(CommonFrame& frame, const Options& options, Stag
 
   if (options.refinement.enabled) {
     clock.start("refinement");
-    outcome.target_from_source = point_to_plane(frame, outcome.target_from_source, 4000, fine_radii, options);
+    outcome.target_from_source = refine(frame, outcome.target_from_source, options);
   }
   return outcome;
 }

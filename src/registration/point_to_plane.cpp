@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 
 #include "estimation/robust_fit.hpp"
+#include "spatial/local_pca.hpp"
 
 namespace igsp {
 namespace {
@@ -13,29 +14,49 @@ constexpr std::size_t min_pairs = 30;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
+// Unknowns: a small rotation about `centre`, then a translation; both move the source.
 struct NormalEquations {
+  Eigen::Vector3d centre;
+  double scale;  // of the robust loss
   Matrix6 information = Matrix6::Zero();
   Vector6 gradient = Vector6::Zero();
   std::size_t pairs = 0;
-};
 
-// Unknowns: a small rotation about `centre`, then a translation.
-NormalEquations accumulate(const PreparedCloud& source, const PreparedCloud& target, const Transformation& pose,
-                           const Eigen::Vector3d& centre, std::size_t stride, double radius) {
-  NormalEquations equations;
-  for (std::size_t i = 0; i < source.features.points.size(); i += stride) {
-    const Eigen::Vector3d p = pose * source.features.points[i];
-    const std::int64_t j = target.grid.nearest(p.cast<float>(), static_cast<float>(radius));
-    if (j < 0) continue;
-    const Eigen::Vector3d& n = target.features.normals[j];
-    if (std::abs(n.dot(pose.linear() * source.features.normals[i])) < min_normal_cosine) continue;
-    const double residual = n.dot(p - target.features.points[j]);
-    const double weight = geman_mcclure_weight(residual, 0.5 * radius);
+  // p and its normal as moved by the current pose, q and its normal of the target.
+  void add(const Eigen::Vector3d& p, const Eigen::Vector3d& p_normal, const Eigen::Vector3d& q,
+           const Eigen::Vector3d& q_normal) {
+    const double cosine = p_normal.dot(q_normal);
+    if (std::abs(cosine) < min_normal_cosine) return;
+    const Eigen::Vector3d n = (q_normal + std::copysign(1.0, cosine) * p_normal).normalized();
+    const double residual = n.dot(p - q);
+    const double weight = geman_mcclure_weight(residual, scale);
     Vector6 jacobian;
     jacobian << (p - centre).cross(n), n;
-    equations.information += weight * jacobian * jacobian.transpose();
-    equations.gradient += weight * residual * jacobian;
-    ++equations.pairs;
+    information += weight * jacobian * jacobian.transpose();
+    gradient += weight * residual * jacobian;
+    ++pairs;
+  }
+};
+
+std::size_t stride_of(const Surface& surface, std::size_t max_points) {
+  return std::max<std::size_t>(1, surface.size() / max_points);
+}
+
+NormalEquations linearise(Surface& source, Surface& target, const Transformation& pose, double radius,
+                          std::size_t max_points) {
+  NormalEquations equations{pose.translation(), 0.5 * radius};
+  const Transformation inverse = pose.inverse();
+  const float reach = static_cast<float>(radius);
+  const auto add = [&](std::size_t i, std::size_t j) {
+    equations.add(pose * source.point(i), pose.linear() * source.normal(i), target.point(j), target.normal(j));
+  };
+  for (std::size_t i = 0; i < source.size(); i += stride_of(source, max_points)) {
+    const std::int64_t j = target.grid().nearest((pose * source.point(i)).cast<float>(), reach);
+    if (j >= 0) add(i, j);
+  }
+  for (std::size_t j = 0; j < target.size(); j += stride_of(target, max_points)) {
+    const std::int64_t i = source.grid().nearest((inverse * target.point(j)).cast<float>(), reach);
+    if (i >= 0) add(i, j);
   }
   return equations;
 }
@@ -59,23 +80,33 @@ void fix_tilt(NormalEquations& equations) {
   }
 }
 
+bool is_small(const Vector6& step, double voxel_size) {
+  return step.head<3>().norm() < 1e-5 && step.tail<3>().norm() < 1e-4 * voxel_size;
+}
+
 }  // namespace
 
-Transformation refine_point_to_plane(const PreparedCloud& source, const PreparedCloud& target,
-                                     const Transformation& initial, const PointToPlaneOptions& options) {
+const Eigen::Vector3d& Surface::normal(std::size_t i) {
+  if (normals_[i] == unknown()) normals_[i] = local_normal(grid_, points_[i].cast<float>(), normal_radius_);
+  return normals_[i];
+}
+
+Transformation refine_point_to_plane(Surface& source, Surface& target, const Transformation& initial,
+                                     const PointToPlaneOptions& options) {
   Transformation pose = initial;
-  const std::size_t stride = std::max<std::size_t>(1, source.features.points.size() / options.max_points);
-  for (const double radius : options.radii) {
-    const Eigen::Vector3d centre = pose.translation();
-    NormalEquations equations =
-        accumulate(source, target, pose, centre, stride, radius * target.features.voxel_size);
+  const std::size_t steps = options.radii.size() + options.max_last_steps;
+  for (std::size_t k = 0; k < steps; ++k) {
+    const double radius = options.radii[std::min(k, options.radii.size() - 1)] * options.voxel_size;
+    NormalEquations equations = linearise(source, target, pose, radius, options.max_points);
     if (equations.pairs < min_pairs) break;
     if (options.degrees_of_freedom == 4) fix_tilt(equations);
     const Eigen::LDLT<Matrix6> solver(equations.information);
     if (solver.info() != Eigen::Success || !solver.isPositive() || solver.rcond() < 1e-12) break;
-    pose = motion(solver.solve(-equations.gradient), centre) * pose;
+    const Vector6 step = solver.solve(-equations.gradient);
+    pose = motion(step, equations.centre) * pose;
+    pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
+    if (k + 1 >= options.radii.size() && is_small(step, options.voxel_size)) break;
   }
-  pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
   return pose;
 }
 

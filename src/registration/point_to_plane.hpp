@@ -2,20 +2,47 @@
 
 #include <span>
 
-#include "registration/prepared_cloud.hpp"
+#include "igsp/point_cloud.hpp"
+#include "spatial/point_grid.hpp"
 
 namespace igsp {
 
+/// A sampled surface with its search structure; normals are computed where they are asked for and kept. Refers to
+/// `points`. Not for use by several threads at once.
+class Surface {
+ public:
+  /// `normal_radius`: sphere of the principal component analysis.
+  Surface(PointView points, PointGrid grid, double normal_radius)
+      : points_(points), grid_(std::move(grid)), normal_radius_(normal_radius), normals_(points.size(), unknown()) {}
+  /// With normals that are known already.
+  Surface(PointView points, PointGrid grid, Points normals)
+      : points_(points), grid_(std::move(grid)), normal_radius_(0), normals_(std::move(normals)) {}
+
+  std::size_t size() const { return points_.size(); }
+  const Eigen::Vector3d& point(std::size_t i) const { return points_[i]; }
+  const PointGrid& grid() const { return grid_; }
+  const Eigen::Vector3d& normal(std::size_t i);  ///< unit, sign arbitrary
+
+ private:
+  static Eigen::Vector3d unknown() { return Eigen::Vector3d::Zero(); }
+  PointView points_;
+  PointGrid grid_;
+  double normal_radius_;
+  Points normals_;
+};
+
 struct PointToPlaneOptions {
-  std::size_t max_points = 4000;    ///< of the source, evenly strided
-  std::span<const double> radii;    ///< one Gauss-Newton step each: search radius [voxels]
+  std::size_t max_points = 4000;  ///< of either cloud, evenly strided
+  std::span<const double> radii;  ///< one Gauss-Newton step each: search radius [voxels]
+  std::size_t max_last_steps = 0;  ///< further steps at the last radius, until they are small
+  double voxel_size = 0;
   int degrees_of_freedom = 6;
 };
 
-/// Fine registration: every step pairs source points with their nearest target point within the radius whose normal
-/// agrees, and minimises the distances to its tangent plane under the Geman-McClure loss at half the radius. Ends early
-/// where a step finds too few pairs or a free direction. Returns target_from_source.
-Transformation refine_point_to_plane(const PreparedCloud& source, const PreparedCloud& target,
-                                     const Transformation& initial, const PointToPlaneOptions& options);
+/// Fine registration: every step pairs the points of either cloud with their nearest point of the other within the
+/// radius whose normal agrees, and minimises the distances along the sum of both normals (Rusinkiewicz 2019, symmetric
+/// ICP) under the Geman-McClure loss at half the radius. Neither cloud is preferred. Ends early where a step finds too
+/// few pairs or a free direction. Returns target_from_source.
+Transformation refine_point_to_plane(Surface& source, Surface& target, const Transformation& initial, const PointToPlaneOptions& options);
 
 }  // namespace igsp
