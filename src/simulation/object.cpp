@@ -37,15 +37,23 @@ Vector3d surface_along(const Field& field, Vector3d at, const Vector3d& directio
   return at;
 }
 
-/// Folds and chisel marks: waves in the field, which shift the surface by a little.
+/// Folds and chisel marks: waves in the field, which shift the surface by a little; many, so that no pattern repeats.
 void add_texture(Field& field, Random& random) {
-  for (int i = 0; i < 8; ++i) {
-    const double frequency = random.uniform(8.0, 40.0), phase = random.angle(), depth = random.uniform(0.005, 0.018);
-    const Vector3d wave = frequency * random.direction();
-    field.visit(field.box(), [&](const Vector3d& p, float& value) {
-      if (value > 0.0f) value += static_cast<float>(depth * std::sin(wave.dot(p) + phase));
-    });
+  struct Wave {
+    Vector3d frequency;
+    double phase, depth;
+  };
+  std::vector<Wave> waves;
+  for (int i = 0; i < 16; ++i) {
+    const double frequency = random.uniform(8.0, 40.0), phase = random.angle(), depth = random.uniform(0.003, 0.011);
+    waves.push_back({frequency * random.direction(), phase, depth});
   }
+  field.visit(field.box(), [&](const Vector3d& p, float& value) {
+    if (value < 0.05f || value > 0.7f) return;  // the surface is nowhere near
+    double sum = 0.0;
+    for (const Wave& wave : waves) sum += wave.depth * std::sin(wave.frequency.dot(p) + wave.phase);
+    value += static_cast<float>(sum);
+  });
 }
 
 /// In units of about the body's radius.
