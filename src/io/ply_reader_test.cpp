@@ -198,18 +198,20 @@ TEST(PlyReader, BadLinesNameTheLine) {
   expect_unreadable("a.ply", ply("ascii", vertex(2), "1 2 3\n\n\n\n\n\n\n"), {"line 14", "truncated"});
 }
 
+/// The last two wrap to 0 bytes in 64 bits: 12 or 8 bytes times 2^62, 6 bytes times 2^63.
 TEST(PlyReader, CountsThatTheFileCannotHoldFailBeforeAnyAllocation) {
-  const std::string huge = "18446744073709551615";
-  for (const auto format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
-    std::string elements = vertex(0);
-    elements.replace(elements.find(" 0\n"), 3, " " + huge + "\n");
-    const auto content = ply(format, elements, "1 2 3\n4 5 6\n");
-    expect_unreadable("a.ply", content,
-                      {"byte offset " + std::to_string(content.size() - 12), huge, "12 bytes follow"});
-    elements = "element other " + huge + "\nproperty double a\n" + vertex(1);
-    expect_unreadable("a.ply", ply(format, elements, "1 2 3\n4 5 6\n"), {huge});
-    elements = "element other " + huge + "\nproperty list int int a\n" + vertex(1);
-    expect_unreadable("a.ply", ply(format, elements, std::string(40, '\0')), {huge});
+  for (const std::string huge : {"18446744073709551615", "4611686018427387904", "9223372036854775808"}) {
+    for (const auto format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
+      std::string elements = vertex(0);
+      elements.replace(elements.find(" 0\n"), 3, " " + huge + "\n");
+      const auto content = ply(format, elements, "1 2 3\n4 5 6\n");
+      const auto body = "byte offset " + std::to_string(content.size() - 12);
+      expect_unreadable("a.ply", content, {body, huge, "12 bytes follow"});
+      elements = "element other " + huge + "\nproperty double a\n" + vertex(1);
+      expect_unreadable("a.ply", ply(format, elements, "1 2 3\n4 5 6\n"), {huge});
+      elements = "element other " + huge + "\nproperty list int int a\n" + vertex(1);
+      expect_unreadable("a.ply", ply(format, elements, std::string(40, '\0')), {huge});
+    }
   }
 }
 
