@@ -15,9 +15,10 @@ struct Pair {
   Transformation truth = Transformation::Identity();  ///< target_from_source
 };
 
-inline Pair simulated_pair(std::string_view scene, int points) {
+inline Pair simulated_pair(std::string_view scene, int points, double station_distance = 0.0) {
   SimulationOptions options;
   options.points = points;
+  options.station_distance = station_distance;
   std::vector<SimulatedScan> scans = simulate(scene, options);
   const Transformation truth = scans[1].world_from_scanner.inverse() * scans[0].world_from_scanner;
   return {std::move(scans[0].points), std::move(scans[1].points), truth};
