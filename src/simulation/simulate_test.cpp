@@ -135,6 +135,18 @@ TEST(Simulate, NoiseIsGaussianAlongTheRay) {
   EXPECT_NEAR(std::sqrt(squares / count), 0.01, 0.0005);
 }
 
+TEST(Simulate, EveryStationHasItsOwnNoise) {
+  SimulationOptions options = small();
+  options.noise = 0.0;
+  const auto exact = simulate("indoor", options);
+  options.noise = 0.01;
+  const auto noisy = simulate("indoor", options);
+  for (std::size_t i = 0; i < 20; ++i) {  // indoors nearly every ray returns, so equal sequences would show here
+    const double first = (noisy[0].points[i] - exact[0].points[i]).norm();
+    EXPECT_GT(std::abs(first - (noisy[1].points[i] - exact[1].points[i]).norm()), 1e-9);
+  }
+}
+
 TEST(Simulate, PosesPutTheScansOfOneSceneOntoEachOther) {
   SimulationOptions options = small();
   options.points = 30000;
