@@ -33,6 +33,15 @@ bench: setup
 	cmake --build --preset release
 	set -e; for benchmark in build/release/bin/*_benchmark; do $$benchmark; done
 
+# New inputs land in build/fuzz/inputs; a crash is written beside the Makefile and stops the run.
+fuzz_seconds ?= 60
+fuzz:
+	@scripts/setup.sh clang-14 libclang-rt-14-dev
+	cmake --preset fuzz
+	cmake --build --preset fuzz
+	mkdir -p build/fuzz/inputs
+	TMPDIR=/dev/shm build/fuzz/bin/read_points_fuzzer -max_len=4096 -max_total_time=$(fuzz_seconds) build/fuzz/inputs fuzz/corpus
+
 format:
 	@scripts/setup.sh clang-format
 	git ls-files '*.hpp' '*.cpp' | xargs clang-format -i
