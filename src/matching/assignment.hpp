@@ -39,8 +39,8 @@ struct Assignment {
 std::int64_t max_assignment_threshold(std::size_t sources, std::size_t targets);
 
 /// The one-to-one assignment of least energy (Eq. 1), in which a source may also stay unmatched at the cost
-/// `threshold`: the optimum of the padded problem of Eq. 5 without the padding. Exact, on one thread; among equal optima
-/// the same input always gives the same one. Edges sorted by (source, target) without duplicates, each cost in
+/// `threshold`: the optimum of the padded problem of Eq. 5 without the padding. Exact, on one thread; among equal
+/// optima the same input always gives the same one. Edges sorted by (source, target) without duplicates, each cost in
 /// [0, threshold). Throws InvalidArgument otherwise, and when the threshold is not in [0, max_assignment_threshold].
 Assignment solve_assignment(std::size_t sources, std::size_t targets, std::span<const AssignmentEdge> edges,
                             std::int64_t threshold);

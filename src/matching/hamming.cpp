@@ -20,8 +20,8 @@ class FeatureRows {
               SimdLevel level = best_simd_level())
       : source_variants_(source_variants), variants_(variants), targets_(targets), level_(level) {
     if (variants == 0 || source_variants.size() % variants != 0) {
-      throw InvalidArgument("variants: " + std::to_string(variants) + " per source, must be at least 1 and divide the " +
-                            std::to_string(source_variants.size()) + " source descriptors");
+      throw InvalidArgument("variants: " + std::to_string(variants) +
+                            " per source, must be at least 1 and divide the " + std::to_string(source_variants.size()) + " source descriptors");
     }
   }
 
@@ -61,7 +61,8 @@ void add_to_histograms(std::span<const std::uint16_t> distances, std::array<Feat
 void append_below(std::span<const std::uint16_t> distances, std::uint16_t limit, std::size_t source,
                   std::vector<FeaturePair>& pairs) {
   std::size_t size = pairs.size();
-  const std::size_t below = std::count_if(distances.begin(), distances.end(), [&](std::uint16_t d) { return d < limit; });
+  const std::size_t below =
+      std::count_if(distances.begin(), distances.end(), [&](std::uint16_t distance) { return distance < limit; });
   if (below == 0) return;
   pairs.resize(size + below + 1);  // one to spare, since pairs that fail are written too
   for (std::size_t j = 0; j < distances.size(); ++j) {  // no branch: which pairs pass cannot be predicted

@@ -70,8 +70,9 @@ struct CountByAdders {
     return (bytes & 0x00ff) + (bytes >> 8);
   }
 
-  static IGSP_INLINE Piece add_eight(Piece& ones, Piece& twos, Piece& fours, Piece a, Piece b, Piece c, Piece d, Piece e,
-                                     Piece f, Piece g, Piece h) {
+  /// Adds eight pieces; returns what carries into the eights.
+  static IGSP_INLINE Piece add_eight(Piece& ones, Piece& twos, Piece& fours, Piece a, Piece b, Piece c, Piece d,
+                                     Piece e, Piece f, Piece g, Piece h) {
     const Piece twos_a = add_bits(ones, a, b);
     const Piece twos_b = add_bits(ones, c, d);
     const Piece fours_a = add_bits(twos, twos_a, twos_b);
