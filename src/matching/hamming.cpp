@@ -21,7 +21,8 @@ class FeatureRows {
       : source_variants_(source_variants), variants_(variants), targets_(targets), level_(level) {
     if (variants == 0 || source_variants.size() % variants != 0) {
       throw InvalidArgument("variants: " + std::to_string(variants) +
-                            " per source, must be at least 1 and divide the " + std::to_string(source_variants.size()) + " source descriptors");
+                            " per source, must be at least 1 and divide the " +
+                            std::to_string(source_variants.size()) + " source descriptors");
     }
   }
 
