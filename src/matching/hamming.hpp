@@ -13,9 +13,9 @@
 namespace igsp {
 
 // The feature distance FD of Eq. 4: the least Hamming distance [bits] between any variant of the source's descriptor
-// and the target's. Everywhere below `source_variants` holds the variants of source 0, then those of source 1, and
-// so on, `variants` of them each. All throw InvalidArgument when `variants` is below 1 or does not divide their number, and no
-// result depends on the number of threads (0: all processors).
+// and the target's. Everywhere below `source_variants` holds the variants of source 0, then those of source 1, and so
+// on, `variants` of them each. All throw InvalidArgument when `variants` is below 1 or does not divide their number,
+// and no result depends on the number of threads (0: all processors).
 
 inline constexpr std::uint16_t max_feature_distance = bsc_words * 64;
 
