@@ -13,8 +13,15 @@ namespace igsp {
 /// and Cancelled; a pair that cannot be registered is a Result that says so.
 Result align(PointView source, PointView target, const Options& options = {}, const ProgressCallback& progress = {});
 
+/// From an initial guess of target_from_source: it is checked and refined if it holds; there is no search.
+Result align(PointView source, PointView target, const Transformation& initial, const Options& options = {},
+             const ProgressCallback& progress = {});
+
 /// The staged door: both feature sets must share one voxel size and the feature options.
 Result align(const Features& source, const Features& target, const Options& options = {},
              const ProgressCallback& progress = {});
+
+Result align(const Features& source, const Features& target, const Transformation& initial,
+             const Options& options = {}, const ProgressCallback& progress = {});
 
 }  // namespace igsp

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -42,6 +44,38 @@ struct CloudSummary {
   std::size_t keypoints = 0;
 };
 
+/// A rigid motion of the source that hardly changes how it lies on the target: the surfaces do not fix it.
+struct FreeDirection {
+  Eigen::Matrix<double, 6, 1> motion;  ///< (rotation, translation) about Precision::centre, target frame, unit length
+                                       ///< with rotations scaled by the size of the scene
+  std::string description;             ///< such as "translation along (1.00, 0.00, 0.00)"
+};
+
+/// How well the surfaces fix the transformation, from the residuals of the fine registration.
+/// Order: rotation about x, y, z [rad], translation along x, y, z [units of the cloud]; the small motion is applied on
+/// the left, in the target's frame, rotations about `centre`.
+struct Precision {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  ///< inverse; 0 where not determined
+  std::vector<FreeDirection> free_directions;
+};
+
+/// What the verdict is made of: two independent questions to the clouds at the pose.
+struct Evidence {
+  std::size_t mutual_matches = 0;    ///< mutual nearest neighbours among the descriptors in a common frame ...
+  std::size_t agreeing_matches = 0;  ///< ... and those of them within 2.5 voxels
+  double contact_share = 0.0;        ///< of the places where the surfaces meet, the share where they touch, (0, 1)
+  double quality = 0.0;              ///< Q = 1.5 log10(s / (1 - s)) + log10 r of contact share s and match share r
+  double rival_odds = 0.0;           ///< odds of the other poses that were looked into, against this one
+};
+
+/// The best other pose that was looked into.
+struct RunnerUp {
+  Transformation target_from_source = Transformation::Identity();
+  double share = 0.0;  ///< of its ranking score in the winner's, [0, 1]: near 1, the two are hard to tell apart
+};
+
 /// What `align` answers. Not being able to register is an answer, never an exception.
 struct Result {
   bool registered = false;  ///< the verdict
@@ -52,6 +86,9 @@ struct Result {
   bool has_estimate = false;                                       ///< false: there is no transformation to look at
   double overlap_source = 0.0;  ///< share of the source's voxels with the target's surface at the pose, [0, 1]
   double overlap_target = 0.0;  ///< the same for the target
+  Evidence evidence;
+  std::optional<RunnerUp> runner_up;
+  Precision precision;
   double rmse = 0.0;            ///< point-to-plane RMS over the overlap [units of the cloud]
   double voxel_size = 0.0;      ///< [units of the cloud]
   CloudSummary source;

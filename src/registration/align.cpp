@@ -19,6 +19,12 @@ Transformation to_world(const Transformation& local, const Features& source, con
   return world;
 }
 
+Transformation to_local(const Transformation& world, const Features& source, const Features& target) {
+  Transformation local = world;
+  local.translation() = world * source.origin - target.origin;
+  return local;
+}
+
 CloudSummary summary_of(const Features& features) {
   return {features.cloud_points, features.points.size(), features.keypoints.size()};
 }
@@ -48,8 +54,10 @@ std::string_view to_string(Termination termination) {
   return "unknown";
 }
 
-Result align(const Features& source, const Features& target, const Options& options,
-             const ProgressCallback& progress) {
+namespace {
+
+Result align_features(const Features& source, const Features& target, const Transformation* initial,
+                      const Options& options, const ProgressCallback& progress) {
   validate(options);
   check_compatible(source, target);
   StageClock clock(progress);
@@ -62,25 +70,30 @@ Result align(const Features& source, const Features& target, const Options& opti
   clock.start("common frame");
   const PreparedCloud prepared_source(source), prepared_target(target);
   CommonFrame frame(prepared_source, prepared_target, options.descriptor.radius * target.voxel_size, options.threads);
-  const SearchOutcome outcome = options.search == Search::direct ? direct_search(frame, options, clock)
-                                                                 : hypotheses_search(frame, options, clock);
-  result.termination = outcome.termination;
-  result.has_estimate = outcome.has_estimate;
+  const SearchOutcome outcome =
+      initial                             ? refine_initial(frame, to_local(*initial, source, target), options, clock)
+      : options.search == Search::direct ? direct_search(frame, options, clock)
+                                          : hypotheses_search(frame, options, clock);
+  clock.start("verdict");
+  judge(frame, outcome, result);
+  clock.finish();
+
   result.target_from_source = to_world(outcome.target_from_source, source, target);
+  result.precision.centre += target.origin;
+  if (result.runner_up) {
+    result.runner_up->target_from_source = to_world(result.runner_up->target_from_source, source, target);
+  }
   result.iterations = outcome.iterations;
   for (IterationRecord& record : result.iterations) {
     record.target_from_source = to_world(record.target_from_source, source, target);
   }
-  clock.start("verdict");
-  judge(frame, outcome, result);
-  clock.finish();
-  result.timings_s = source.timings_s;
-  if (&source != &target) result.timings_s = sum_of(result.timings_s, target.timings_s);
+  result.timings_s = sum_of(source.timings_s, target.timings_s);
   result.timings_s.insert(result.timings_s.end(), clock.timings().begin(), clock.timings().end());
   return result;
 }
 
-Result align(PointView source, PointView target, const Options& options, const ProgressCallback& progress) {
+Result align_points(PointView source, PointView target, const Transformation* initial, const Options& options,
+                    const ProgressCallback& progress) {
   validate(options);
   bounds_of(source, "source");
   bounds_of(target, "target");
@@ -91,9 +104,30 @@ Result align(PointView source, PointView target, const Options& options, const P
   clock.finish();
   const Features source_features = extract_features(source, scaled, progress);
   const Features target_features = extract_features(target, scaled, progress);
-  Result result = align(source_features, target_features, scaled, progress);
+  Result result = align_features(source_features, target_features, initial, scaled, progress);
   result.timings_s.insert(result.timings_s.begin(), clock.timings().begin(), clock.timings().end());
   return result;
+}
+
+}  // namespace
+
+Result align(PointView source, PointView target, const Options& options, const ProgressCallback& progress) {
+  return align_points(source, target, nullptr, options, progress);
+}
+
+Result align(PointView source, PointView target, const Transformation& initial, const Options& options,
+             const ProgressCallback& progress) {
+  return align_points(source, target, &initial, options, progress);
+}
+
+Result align(const Features& source, const Features& target, const Options& options,
+             const ProgressCallback& progress) {
+  return align_features(source, target, nullptr, options, progress);
+}
+
+Result align(const Features& source, const Features& target, const Transformation& initial, const Options& options,
+             const ProgressCallback& progress) {
+  return align_features(source, target, &initial, options, progress);
 }
 
 }  // namespace igsp

@@ -15,7 +15,7 @@ SearchOutcome direct_search(const CommonFrame& frame, const Options& options, St
   const double share = 1.0 / schedule.max_iterations;
   LoopOutcome loop = igsp_loop(input, Transformation::Identity(), schedule, options,
                                [&](int iteration) { clock.report(share * iteration); });
-  return {loop.termination, loop.has_estimate, loop.target_from_source, std::move(loop.iterations), {}};
+  return {loop.termination, loop.has_estimate, loop.target_from_source, std::move(loop.iterations), {}, {}};
 }
 
 }  // namespace igsp

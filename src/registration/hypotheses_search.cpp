@@ -5,6 +5,7 @@
 #include "registration/igsp_loop.hpp"
 #include "registration/point_to_plane.hpp"
 #include "registration/pose_assessment.hpp"
+#include "registration/precision.hpp"
 #include "registration/search.hpp"
 
 namespace igsp {
@@ -16,11 +17,18 @@ constexpr LoopSchedule::Bounds common_frame_bounds{95.0, 10.0};
 constexpr int first_hybrid_k = 4;
 constexpr double hybrid_fit_scale = 1.5;  // voxels
 
+constexpr int first_iterations = 3;
+constexpr int last_iterations = 20;
+
 constexpr std::array<double, 6> coarse_radii{3, 3, 2, 2, 1.5, 1.5};
 constexpr std::array<double, 5> fine_radii{3, 2, 1.5, 1.5, 1};
-constexpr double fine_normal_radius = 1.5;    // voxels
+constexpr double fine_normal_radius = 1.5;  // voxels
+constexpr std::size_t coarse_points = 800;
+constexpr std::size_t fine_points = 4000;
+constexpr std::size_t max_last_steps = 10;
 constexpr std::size_t enough_agreeing = 15;
 constexpr double enough_agreement = 0.6;
+constexpr double rival_inliers = 0.5;  // of the winner's
 
 std::vector<Hypothesis> propose(CommonFrame& frame, const Options& options) {
   const PreparedCloud &source = frame.source(), &target = frame.target();
@@ -36,17 +44,23 @@ std::vector<Hypothesis> propose(CommonFrame& frame, const Options& options) {
   return propose_hypotheses(candidates, graph, source.keypoints, target.keypoints, v, options);
 }
 
-// Matches every proposal again in its common frame and keeps those with most agreeing matches.
+bool is_clear(const Rematch& match) {
+  return match.agreeing >= enough_agreeing &&
+         static_cast<double>(match.agreeing) >= enough_agreement * static_cast<double>(match.matches.size());
+}
+
+// Matches every proposal again in its common frame and keeps those with most agreeing matches. After a clear winner only
+// proposals that as many candidates support are looked into: they would be the other poses of a symmetric scene.
 std::vector<Rematch> screen(CommonFrame& frame, std::span<const Hypothesis> hypotheses, const Options& options,
                             StageClock& clock) {
   std::vector<Rematch> screened;
-  for (const Hypothesis& hypothesis : hypotheses) {
-    clock.report(static_cast<double>(screened.size()) / static_cast<double>(hypotheses.size()));
-    Rematch match = rematch(frame, hypothesis.target_from_source, options.degrees_of_freedom);
-    const bool clear = match.agreeing >= enough_agreeing &&
-                       static_cast<double>(match.agreeing) >= enough_agreement * match.matches.size();
-    screened.push_back(std::move(match));
-    if (clear) break;
+  std::size_t winner_inliers = 0;
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    clock.report(static_cast<double>(i) / static_cast<double>(hypotheses.size()));
+    const bool could_rival = static_cast<double>(hypotheses[i].inliers) >= rival_inliers * winner_inliers;
+    if (winner_inliers > 0 && !could_rival) continue;
+    screened.push_back(rematch(frame, hypotheses[i].target_from_source, options.degrees_of_freedom));
+    if (is_clear(screened.back())) winner_inliers = std::max(winner_inliers, hypotheses[i].inliers);
   }
   std::stable_sort(screened.begin(), screened.end(),
                    [](const Rematch& a, const Rematch& b) { return a.agreeing > b.agreeing; });
@@ -66,17 +80,56 @@ LoopOutcome hybrid_loop(CommonFrame& frame, const Transformation& initial, int i
 // A short refinement on the voxel centroids, before hypotheses are compared.
 Transformation settle(Surface& source, Surface& target, const Transformation& initial, double voxel_size,
                       const Options& options) {
-  return refine_point_to_plane(source, target, initial, {800, coarse_radii, 0, voxel_size, options.degrees_of_freedom});
+  return refine_point_to_plane(source, target, initial, {coarse_points, coarse_radii, 0, voxel_size, options.degrees_of_freedom});
 }
 
 // Down to the noise of the scanner, on the finer voxels.
-Transformation refine(const CommonFrame& frame, const Transformation& initial, const Options& options) {
+void refine(const CommonFrame& frame, const Options& options, StageClock& clock, SearchOutcome& outcome) {
+  clock.start("refinement");
   const Features &source = frame.source().features, &target = frame.target().features;
   const double v = target.voxel_size;
   Surface fine_source(source.fine_points, PointGrid(source.fine_points, v), fine_normal_radius * v);
   Surface fine_target(target.fine_points, PointGrid(target.fine_points, v), fine_normal_radius * v);
-  return refine_point_to_plane(fine_source, fine_target, initial,
-                               {4000, fine_radii, 10, v, options.degrees_of_freedom});
+  if (options.refinement.enabled) {
+    outcome.target_from_source =
+        refine_point_to_plane(fine_source, fine_target, outcome.target_from_source,
+                              {fine_points, fine_radii, max_last_steps, v, options.degrees_of_freedom});
+  }
+  const Linearisation at_pose = linearise_at(fine_source, fine_target, outcome.target_from_source,
+                                             fine_radii.back() * v, fine_points);
+  outcome.precision = precision_of(at_pose, size_of(fine_source));
+}
+
+void finish(CommonFrame& frame, const Options& options, StageClock& clock, SearchOutcome& outcome) {
+  clock.start("loop");
+  LoopOutcome loop = hybrid_loop(frame, outcome.target_from_source, last_iterations, options);
+  outcome.termination = loop.termination;
+  outcome.iterations = std::move(loop.iterations);
+  if (loop.has_estimate) outcome.target_from_source = loop.target_from_source;
+  refine(frame, options, clock, outcome);
+}
+
+struct Ranked {
+  Transformation pose;
+  double score;
+};
+
+// A few iterations of the loop and a short refinement for each, then its score. Best first.
+std::vector<Ranked> rank(CommonFrame& frame, std::span<const Rematch> candidates, const Options& options,
+                         StageClock& clock) {
+  const PreparedCloud &source_cloud = frame.source(), &target_cloud = frame.target();
+  Surface source(source_cloud.features.points, source_cloud.grid, source_cloud.features.normals);
+  Surface target(target_cloud.features.points, target_cloud.grid, target_cloud.features.normals);
+  std::vector<Ranked> ranked;
+  for (const Rematch& candidate : candidates) {
+    clock.report(static_cast<double>(ranked.size()) / static_cast<double>(candidates.size()));
+    const LoopOutcome loop = hybrid_loop(frame, candidate.target_from_source, first_iterations, options);
+    const Transformation pose =
+        settle(source, target, loop.target_from_source, target_cloud.features.voxel_size, options);
+    ranked.push_back({pose, ranking_score(frame, pose)});
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.score > b.score; });
+  return ranked;
 }
 
 }  // namespace
@@ -87,38 +140,25 @@ SearchOutcome hypotheses_search(CommonFrame& frame, const Options& options, Stag
   const std::vector<Hypothesis> hypotheses = propose(frame, options);
   clock.start("screening");
   const std::vector<Rematch> screened = screen(frame, hypotheses, options, clock);
-  if (screened.empty()) return outcome;
-
   clock.start("ranking");
-  const double v = frame.target().features.voxel_size;
-  Surface source(frame.source().features.points, frame.source().grid, frame.source().features.normals);
-  Surface target(frame.target().features.points, frame.target().grid, frame.target().features.normals);
-  double best_score = -1;
-  for (const Rematch& candidate : screened) {
-    clock.report(0.5);
-    const LoopOutcome loop = hybrid_loop(frame, candidate.target_from_source, 3, options);
-    const Transformation pose = settle(source, target, loop.target_from_source, v, options);
-    const double score = ranking_score(frame, pose);
-    if (score > best_score) {
-      best_score = score;
-      std::swap(outcome.target_from_source, outcome.rivals.emplace_back(pose));
-      if (!outcome.has_estimate) outcome.rivals.clear();
-      outcome.has_estimate = true;
-    } else {
-      outcome.rivals.push_back(pose);
-    }
-  }
+  const std::vector<Ranked> ranked = rank(frame, screened, options, clock);
+  if (ranked.empty()) return outcome;
 
-  clock.start("loop");
-  LoopOutcome loop = hybrid_loop(frame, outcome.target_from_source, 20, options);
-  outcome.termination = loop.termination;
-  outcome.iterations = std::move(loop.iterations);
-  if (loop.has_estimate) outcome.target_from_source = loop.target_from_source;
-
-  if (options.refinement.enabled) {
-    clock.start("refinement");
-    outcome.target_from_source = refine(frame, outcome.target_from_source, options);
+  outcome.has_estimate = true;
+  outcome.target_from_source = ranked.front().pose;
+  for (std::size_t i = 1; i < ranked.size(); ++i) {
+    outcome.rivals.push_back({ranked[i].pose, ranked[i].score / std::max(ranked.front().score, 1e-300)});
   }
+  finish(frame, options, clock, outcome);
+  return outcome;
+}
+
+SearchOutcome refine_initial(CommonFrame& frame, const Transformation& initial, const Options& options,
+                             StageClock& clock) {
+  SearchOutcome outcome;
+  outcome.has_estimate = true;
+  outcome.target_from_source = initial;
+  finish(frame, options, clock, outcome);
   return outcome;
 }
 

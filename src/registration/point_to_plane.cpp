@@ -21,6 +21,7 @@ struct NormalEquations {
   Matrix6 information = Matrix6::Zero();
   Vector6 gradient = Vector6::Zero();
   std::size_t pairs = 0;
+  double weight_sum = 0, weighted_squares = 0;
 
   // p and its normal as moved by the current pose, q and its normal of the target.
   void add(const Eigen::Vector3d& p, const Eigen::Vector3d& p_normal, const Eigen::Vector3d& q,
@@ -34,6 +35,8 @@ struct NormalEquations {
     jacobian << (p - centre).cross(n), n;
     information += weight * jacobian * jacobian.transpose();
     gradient += weight * residual * jacobian;
+    weight_sum += weight;
+    weighted_squares += weight * residual * residual;
     ++pairs;
   }
 };
@@ -108,6 +111,13 @@ Transformation refine_point_to_plane(Surface& source, Surface& target, const Tra
     if (k + 1 >= options.radii.size() && is_small(step, options.voxel_size)) break;
   }
   return pose;
+}
+
+Linearisation linearise_at(Surface& source, Surface& target, const Transformation& pose, double radius,
+                           std::size_t max_points) {
+  const NormalEquations equations = linearise(source, target, pose, radius, max_points);
+  const double variance = equations.weight_sum > 0 ? equations.weighted_squares / equations.weight_sum : 0.0;
+  return {equations.centre, equations.information, variance, equations.pairs};
 }
 
 }  // namespace igsp

@@ -45,4 +45,15 @@ struct PointToPlaneOptions {
 /// few pairs or a free direction. Returns target_from_source.
 Transformation refine_point_to_plane(Surface& source, Surface& target, const Transformation& initial, const PointToPlaneOptions& options);
 
+/// The normal equations of one step at a pose: sum of J^T w J over pairs, and the variance of their residuals. Rotations
+/// about `centre` (target frame) first, then translations.
+struct Linearisation {
+  Eigen::Vector3d centre;
+  Eigen::Matrix<double, 6, 6> hessian;
+  double residual_variance = 0;  ///< [units of the cloud ^ 2]
+  std::size_t pairs = 0;         ///< from both directions
+};
+Linearisation linearise_at(Surface& source, Surface& target, const Transformation& pose, double radius,
+                           std::size_t max_points);
+
 }  // namespace igsp

@@ -8,13 +8,20 @@
 
 namespace igsp {
 
+/// A refined hypothesis that lost.
+struct Rival {
+  Transformation target_from_source;
+  double share;  ///< of its ranking score in the winner's
+};
+
 /// What a search hands to the verdict, in the clouds' local coordinates.
 struct SearchOutcome {
   Termination termination = Termination::too_few_matches;
   bool has_estimate = false;
   Transformation target_from_source = Transformation::Identity();
   std::vector<IterationRecord> iterations;
-  std::vector<Transformation> rivals;  ///< other hypotheses that were refined as well
+  std::vector<Rival> rivals;  ///< other poses, best first
+  Precision precision;        ///< in the target's local coordinates
 };
 
 /// The paper: Algorithm 1 from feature distance alone.
@@ -23,5 +30,9 @@ SearchOutcome direct_search(const CommonFrame& frame, const Options& options, St
 /// Hypotheses from geometric consistency; screened, refined and ranked in a common frame; the best one through the
 /// hybrid loop to the end and, if asked for, point-to-plane refinement.
 SearchOutcome hypotheses_search(CommonFrame& frame, const Options& options, StageClock& clock);
+
+/// From an initial guess: no search, only the hybrid loop and the refinement; the verdict tells whether it held.
+SearchOutcome refine_initial(CommonFrame& frame, const Transformation& initial, const Options& options,
+                             StageClock& clock);
 
 }  // namespace igsp

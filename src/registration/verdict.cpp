@@ -2,20 +2,26 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "registration/hypotheses.hpp"
 #include "registration/pose_assessment.hpp"
+#include "registration/precision.hpp"
 
 namespace igsp {
 namespace {
 
-constexpr double min_quality = 0.60;
+// Fitted on simulated pairs of known truth, docs/verdict.md.
+constexpr double even_quality = 0.60;  // Q at which a pose is as likely right as wrong
+constexpr double steepness = 3.0;      // decades of the odds per unit of Q
 
-std::string evidence(const PoseAssessment& pose) {
-  return fmt::format("{} of {} mutual matches agree; surfaces touch at {:.0f} % of the places where they meet",
-                     pose.agreeing_matches, pose.mutual_matches,
-                     100 * std::sqrt(pose.source_on_target.share * pose.target_on_source.share));
+double odds(double quality) { return std::pow(10.0, steepness * quality); }
+
+std::string free_motions(const std::vector<FreeDirection>& directions) {
+  std::string text;
+  for (const FreeDirection& direction : directions) text += (text.empty() ? "" : ", ") + direction.description;
+  return text;
 }
 
 std::string why_no_estimate(const Result& result) {
@@ -28,30 +34,73 @@ std::string why_no_estimate(const Result& result) {
   }
 }
 
+std::string in_words(const Result& result) {
+  const Evidence& e = result.evidence;
+  std::string text = fmt::format(
+      "{} of {} mutual matches agree; overlap {:.2f}; surfaces touch at {:.0f} % of the places where they meet",
+      e.agreeing_matches, e.mutual_matches, result.overlap(), 100 * e.contact_share);
+  if (result.runner_up) text += fmt::format("; runner-up explains {:.0f} %", 100 * result.runner_up->share);
+  return text;
+}
+
+// Other poses, best first, without those that say the same as the winner.
+std::vector<Rival> true_rivals(const CommonFrame& frame, const SearchOutcome& outcome) {
+  std::vector<Rival> rivals;
+  const double v = frame.target().features.voxel_size;
+  for (const Rival& rival : outcome.rivals) {
+    if (!same_pose(rival.target_from_source, outcome.target_from_source, Eigen::Vector3d::Zero(), v)) {
+      rivals.push_back(rival);
+    }
+  }
+  return rivals;
+}
+
+std::vector<FreeDirection> free_in_the_scene(const CommonFrame& frame) {
+  const PreparedCloud& target = frame.target();
+  Surface surface(target.features.points, target.grid, target.features.normals);
+  return slippable_motions(surface);
+}
+
 }  // namespace
 
 void judge(CommonFrame& frame, const SearchOutcome& outcome, Result& result) {
+  result.termination = outcome.termination;
+  result.has_estimate = outcome.has_estimate;
   if (!outcome.has_estimate) {
     result.reason = why_no_estimate(result);
+    result.precision.free_directions = free_in_the_scene(frame);
+    if (!result.precision.free_directions.empty()) {
+      result.reason += "; the target alone leaves free: " + free_motions(result.precision.free_directions);
+    }
     return;
   }
   const PoseAssessment pose = assess_pose(frame, outcome.target_from_source);
   result.overlap_source = pose.source_on_target.overlap;
   result.overlap_target = pose.target_on_source.overlap;
   result.rmse = pose.source_on_target.rmse;
+  result.precision = outcome.precision;
+  result.evidence = {pose.mutual_matches, pose.agreeing_matches,
+                     std::sqrt(pose.source_on_target.share * pose.target_on_source.share), pose.quality};
 
-  const Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  double odds_against = std::pow(10.0, 3 * (min_quality - pose.quality));
-  double rivals = 0;
-  for (const Transformation& rival : outcome.rivals) {
-    if (same_pose(rival, outcome.target_from_source, centre, frame.target().features.voxel_size)) continue;
-    rivals += std::pow(10.0, 3 * (assess_pose(frame, rival).quality - pose.quality));
+  const std::vector<Rival> rivals = true_rivals(frame, outcome);
+  if (!rivals.empty()) result.runner_up = RunnerUp{rivals.front().target_from_source, std::min(1.0, rivals.front().share)};
+  double rival_odds = 0;
+  for (const Rival& rival : rivals) {
+    rival_odds += odds(assess_pose(frame, rival.target_from_source).quality - pose.quality);
   }
-  result.confidence = 1.0 / (1.0 + odds_against + rivals);
+  result.evidence.rival_odds = rival_odds;
+
+  const double chance_odds = odds(even_quality - pose.quality);
+  result.confidence = 1.0 / (1.0 + chance_odds + rival_odds);
+  const bool is_free = !result.precision.free_directions.empty();
+  if (is_free) result.confidence = std::min(result.confidence, 0.1);
   result.registered = result.confidence >= 0.5;
-  result.reason = evidence(pose);
-  if (!result.registered) {
-    result.reason += rivals > odds_against ? "; another pose explains the clouds about as well" : "; too little to tell it from chance";
+
+  result.reason = in_words(result);
+  if (is_free) result.reason += "; not fixed by the surfaces: " + free_motions(result.precision.free_directions);
+  if (!result.registered && !is_free) {
+    result.reason += rival_odds > chance_odds ? "; ambiguous: another pose explains the clouds about as well"
+                                              : "; too little to tell it from chance";
   }
 }
 

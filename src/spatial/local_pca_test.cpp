@@ -158,6 +158,21 @@ TEST(LocalPca, CurvatureIsASurfaceVariation) {
   }
 }
 
+TEST(LocalNormal, IsThatOfTheSphereAroundAnyPlace) {
+  Random random(9);
+  const BumpySurface shape(random);
+  const Points points = shape.sample(random, 1500, 4);
+  const PointGrid grid(points, 0.5);
+  const LocalPca pca = local_pca(grid, 0.8, 1);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d normal = local_normal(grid, points[i].cast<float>(), 0.8);
+    ASSERT_NEAR(normal.norm(), 1, 1e-5);
+    if (pca.neighbours[i] < 4 || pca.ratio32[i] > 0.8) continue;
+    ASSERT_GT(std::abs(normal.dot(pca.normals[i].cast<double>())), 1 - 1e-5) << "point " << i;
+  }
+  EXPECT_NEAR(local_normal(grid, Eigen::Vector3f(100, 100, 100), 0.8).norm(), 1, 1e-6);
+}
+
 TEST(LocalPca, OfNoPointsIsEmpty) { EXPECT_TRUE(pca_of({}, 1.0).curvature.empty()); }
 
 }  // namespace

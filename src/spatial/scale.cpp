@@ -13,9 +13,9 @@
 namespace igsp {
 namespace {
 
-constexpr double max_voxels_per_point = 0.6;  // above it the voxels would only repeat the raw sampling
-constexpr int max_steps = 16;                 // dense clouds need 3 to 5, those limited by their spacing up to 12
-constexpr double max_voxels_across = 1 << 19;  // what the voxel filter can hold: many points at few places ask for more
+constexpr double max_voxels_per_point = 0.6;   // above it the voxels would only repeat the raw sampling
+constexpr int max_steps = 16;                  // dense clouds need 3 to 5, those limited by their spacing up to 12
+constexpr double max_voxels_across = 1 << 18;  // a quarter of what the voxel filter holds: few places ask for more
 
 // Number of occupied voxels by linear counting (Whang et al. 1990): n = -M ln(share of empty slots in a map of M).
 double count_voxels(PointView cloud, const Bounds& bounds, double voxel_size) {

@@ -1,0 +1,146 @@
+#include "registration/common_frame.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "core/core_testing.hpp"
+#include "features/bsc.hpp"
+
+namespace igsp {
+namespace {
+
+using testing::BumpySurface;
+using testing::Random;
+
+Options frame_options() {
+  Options options;
+  options.threads = 1;
+  options.scale.voxel_size = 0.1;
+  options.keypoints.suppression_radius = 3;
+  return options;
+}
+
+/// A bumpy surface and a moved resampling of it.
+struct Scene {
+  Transformation truth;
+  Features source, target;
+  PreparedCloud prepared_source, prepared_target;
+
+  explicit Scene(std::uint64_t seed) : Scene(Random(seed)) {}
+
+  CommonFrame frame(int threads = 1) const {
+    return CommonFrame(prepared_source, prepared_target, frame_options().descriptor.radius * 0.1, threads);
+  }
+
+ private:
+  explicit Scene(Random random) : Scene(random, BumpySurface(random), random.motion(3)) {}
+  Scene(Random& random, const BumpySurface& shape, const Transformation& motion)
+      : truth(motion),
+        source(extract_features(shape.sample(random, 20000, 4), frame_options())),
+        target(extract_features(testing::moved(motion, shape.sample(random, 20000, 4)), frame_options())),
+        prepared_source(source),
+        prepared_target(target) {
+    truth.translation() += truth.linear() * source.origin - target.origin;  // between the centred clouds
+  }
+};
+
+int distance(const Descriptor& a, const Descriptor& b) {
+  int count = 0;
+  for (int word = 0; word < bsc_words; ++word) count += std::popcount(a[word] ^ b[word]);
+  return count;
+}
+
+TEST(CommonFrame, DescribesBothCloudsAlongTheTargetsAxes) {
+  const Scene scene(1);
+  CommonFrame frame = scene.frame();
+  const auto& target = frame.target_descriptors();
+  const auto& source = frame.source_descriptors(scene.truth.linear());
+  ASSERT_EQ(target.size(), scene.target.keypoints.size());
+  ASSERT_EQ(source.size(), scene.source.keypoints.size());
+  const double radius = frame.descriptor_radius();
+  Support support;
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    gather_support(scene.prepared_source.grid, scene.prepared_source.keypoints[i], radius, support);
+    EXPECT_EQ(source[i], binary_shape_context(support, scene.truth.linear().transpose(), radius));
+  }
+  gather_support(scene.prepared_target.grid, scene.prepared_target.keypoints[0], radius, support);
+  EXPECT_EQ(target[0], binary_shape_context(support, Eigen::Matrix3d::Identity(), radius));
+}
+
+TEST(CommonFrame, ReusesDescriptorsWithinTwoDegrees) {
+  const Scene scene(2);
+  CommonFrame frame = scene.frame();
+  const auto turned = [&](double degrees) {
+    const Eigen::AngleAxisd turn(degrees * M_PI / 180, Eigen::Vector3d(1, 2, 3).normalized());
+    return Eigen::Matrix3d(turn * scene.truth.linear());
+  };
+  const std::vector<Descriptor> first = frame.source_descriptors(turned(0));
+  EXPECT_EQ(frame.source_descriptors(turned(1.9)), first);
+  EXPECT_NE(frame.source_descriptors(turned(2.1)), first);
+}
+
+TEST(MutualMatches, AreNearestToEachOther) {
+  const Scene scene(3);
+  CommonFrame frame = scene.frame();
+  const auto source = frame.source_descriptors(scene.truth.linear());
+  const auto& target = frame.target_descriptors();
+  const auto nearest = [](const Descriptor& one, const std::vector<Descriptor>& all) {
+    return std::min_element(all.begin(), all.end(), [&](const auto& a, const auto& b) {
+             return distance(one, a) < distance(one, b);
+           }) - all.begin();
+  };
+  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> expected;
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    const auto j = nearest(source[i], target);
+    if (nearest(target[j], source) != static_cast<std::ptrdiff_t>(i)) continue;
+    expected.emplace_back(scene.prepared_source.keypoints[i], scene.prepared_target.keypoints[j]);
+  }
+  const auto matches = mutual_matches(frame, scene.truth.linear());
+  ASSERT_EQ(matches.size(), expected.size());
+  ASSERT_GT(matches.size(), 20u);
+  for (std::size_t k = 0; k < matches.size(); ++k) {
+    EXPECT_EQ(matches[k].source, expected[k].first);
+    EXPECT_EQ(matches[k].target, expected[k].second);
+    EXPECT_EQ(matches[k].weight, 1);
+  }
+  for (const int threads : {2, 4}) {
+    CommonFrame other = scene.frame(threads);
+    EXPECT_EQ(mutual_matches(other, scene.truth.linear()).size(), matches.size());
+  }
+}
+
+TEST(Rematch, FindsThePoseFromARotationThatIsNearlyRight) {
+  for (std::uint64_t seed = 4; seed < 7; ++seed) {
+    const Scene scene(seed);
+    CommonFrame frame = scene.frame();
+    Transformation hypothesis = scene.truth;
+    hypothesis.linear() = Eigen::AngleAxisd(0.1, Eigen::Vector3d(1, 1, 0).normalized()) * scene.truth.linear();
+    hypothesis.translation() += Eigen::Vector3d(1, -2, 1);  // 24 voxels away
+    const Rematch found = rematch(frame, hypothesis, 6);
+    EXPECT_LT((found.target_from_source.linear() - scene.truth.linear()).norm(), 0.05) << "seed " << seed;
+    EXPECT_LT((found.target_from_source.translation() - scene.truth.translation()).norm(), 0.1) << "seed " << seed;
+    std::size_t agreeing = 0;
+    for (const PointPair& match : found.matches) {
+      agreeing += (match.target - found.target_from_source * match.source).norm() < 0.25;
+    }
+    EXPECT_EQ(found.agreeing, agreeing);
+  }
+}
+
+TEST(Rematch, OfNoKeypointsKeepsTheHypothesis) {
+  Features nothing;
+  nothing.voxel_size = 0.1;
+  const PreparedCloud prepared(nothing);
+  CommonFrame frame(prepared, prepared, 0.7, 1);
+  Random random(8);
+  const Transformation hypothesis = random.motion(1);
+  const Rematch found = rematch(frame, hypothesis, 6);
+  EXPECT_EQ(found.target_from_source.matrix(), hypothesis.matrix());
+  EXPECT_TRUE(found.matches.empty());
+  EXPECT_EQ(found.agreeing, 0u);
+}
+
+}  // namespace
+}  // namespace igsp
