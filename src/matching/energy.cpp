@@ -17,25 +17,37 @@ std::span<const Descriptor> variants_of(const KeypointSets& keypoints, std::size
 
 // k = 0: CD = FD for every pair, however far apart.
 std::vector<AssignmentEdge> edges_by_feature(const KeypointSets& keypoints, double threshold, int threads) {
+  const std::int64_t limit = to_assignment_units(threshold);
   std::vector<AssignmentEdge> edges;
   for (const FeaturePair& pair : feature_pairs_below(keypoints.source_variants, keypoints.variants,
                                                      keypoints.target_descriptors, threshold, threads)) {
-    edges.push_back({pair.source, pair.target, to_assignment_units(pair.distance)});
+    const std::int64_t cost = to_assignment_units(pair.distance);
+    if (cost < limit) edges.push_back({pair.source, pair.target, cost});  // a threshold may round down to its cost
   }
   return edges;
+}
+
+// Largest distance of a keypoint from the local origin; 1 if there is none.
+double extent_of(const KeypointSets& keypoints) {
+  double squared = 0;
+  for (const Eigen::Vector3d& point : keypoints.source) squared = std::max(squared, point.squaredNorm());
+  for (const Eigen::Vector3d& point : keypoints.target) squared = std::max(squared, point.squaredNorm());
+  return squared > 0 ? std::sqrt(squared) : 1.0;
 }
 
 // CD < T implies |p - q| < T / (s_ed W_ed), as FD >= 0: a radius search finds every candidate.
 std::vector<AssignmentEdge> edges_by_distance(const KeypointSets& keypoints, double ed_scale,
                                               const EnergyWeights& weights, double threshold, int threads) {
-  const double radius = threshold / (ed_scale * weights.ed);
   const std::int64_t limit = to_assignment_units(threshold);
+  if (limit <= 0) return {};
+  const double extent = extent_of(keypoints);
+  const double radius = std::min(threshold / (ed_scale * weights.ed), 3 * extent);  // twice the extent reaches everyone
+  // A margin for the grid's coordinates in single precision; the exact test follows in double.
+  const float reach = static_cast<float>(1.001 * radius + 1e-6 * extent);
   const PointGrid grid(keypoints.target, radius);
   std::vector<std::vector<AssignmentEdge>> rows(keypoints.source.size());
   parallel_blocks(rows.size(), threads, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      // A margin for the grid's single precision; the exact test follows in double.
-      const float reach = static_cast<float>(radius) * 1.001f;
       grid.visit_sphere(keypoints.source[i].cast<float>(), reach, [&](std::uint32_t position, float) {
         const std::uint32_t j = grid.index[position];
         const double ed = ed_scale * (keypoints.source[i] - keypoints.target[j]).norm();
