@@ -40,7 +40,7 @@ struct LoopOutcome {
 };
 
 /// Algorithm 1: globally optimal correspondences in the hybrid metric and the transformation they give, in turn, from
-/// coarse to fine. `tick(k)` is called once an iteration and may throw.
+/// coarse to fine. `tick` is called at the start of every iteration with its number from 0 on, and may throw.
 LoopOutcome igsp_loop(const LoopInput& input, const Transformation& initial, const LoopSchedule& schedule,
                       const Options& options, const std::function<void(int)>& tick = {});
 
