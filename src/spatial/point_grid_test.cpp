@@ -52,7 +52,8 @@ RC_GTEST_PROP(PointGrid, FindsExactlyThePointsOfASphere, (std::uint64_t seed)) {
     const Eigen::Vector3f centre = random_query(random, points);
     const float radius = random_radius(random);
     Found found, expected;
-    grid.visit_sphere(centre, radius, [&](std::uint32_t i, float squared) { found.emplace_back(grid.index[i], squared); });
+    grid.visit_sphere(centre, radius,
+                      [&](std::uint32_t i, float squared) { found.emplace_back(grid.index[i], squared); });
     std::sort(found.begin(), found.end());
     for (std::uint32_t i = 0; i < points.size(); ++i) {
       const float squared = squared_distance(points[i], centre);
