@@ -20,7 +20,8 @@ Features features_of(const Points& points) {
 }
 
 /// Contact of two clouds given in one frame, when the first is moved by `motion` first.
-SurfaceContact contact(const Points& moved, const Points& fixed, const Transformation& motion = Transformation::Identity()) {
+SurfaceContact contact(const Points& moved, const Points& fixed,
+                       const Transformation& motion = Transformation::Identity()) {
   const Features a = features_of(moved), b = features_of(fixed);
   Transformation local = motion;  // between the centred clouds
   local.translation() += motion.linear() * a.origin - b.origin;
@@ -31,7 +32,7 @@ struct Scene {
   Random random;
   BumpySurface shape;
   explicit Scene(std::uint64_t seed) : random(seed), shape(random) {}
-  Points sample(double half_side = 3) { return shape.sample(random, static_cast<std::size_t>(3000 * half_side * half_side), half_side); }
+  Points sample() { return shape.sample(random, 27000, 3); }
 };
 
 TEST(SurfaceContact, OfTwoSamplesOfOneSurfaceIsComplete) {
