@@ -53,6 +53,7 @@ std::string answer_text(const Result& result, bool voxel_size_given, double seco
   if (result.has_estimate) {
     text += result.registered ? "target_from_source\n" : "best estimate of target_from_source, not to be relied on\n";
     text += matrix_text(result.target_from_source);
+    text += fmt::format("confidence  {:.3f}\n", result.confidence);
     text += fmt::format("overlap     {:.3f} (source {:.3f}, target {:.3f})\n", result.overlap(), result.overlap_source,
                         result.overlap_target);
     text += fmt::format("RMSE        {:.4g}\n", result.rmse);

@@ -60,6 +60,7 @@ Json align_report(const Result& result, const CloudInput& source, const CloudInp
   json["reason"] = result.reason;
   json["termination"] = to_string(result.termination);
   json["target_from_source"] = result.has_estimate ? to_json(result.target_from_source) : Json(nullptr);
+  json["confidence"] = result.confidence;
   json["overlap"] = result.overlap();
   json["overlap_source"] = result.overlap_source;
   json["overlap_target"] = result.overlap_target;

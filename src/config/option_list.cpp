@@ -60,7 +60,8 @@ constexpr Option make_option(std::string_view key, std::string_view section, std
   using Field = FieldType<field_of>;
   static_assert(std::is_same_v<Field, bool> || std::is_same_v<Field, int> || std::is_same_v<Field, double> ||
                 std::is_enum_v<Field>);
-  Option option{key, section, flag, unit, range, help, OptionKind::choice, {}, get_field<field_of>, set_field<field_of>};
+  Option option{key,  section,           flag, unit,  range,
+                help, OptionKind::choice, {},   get_field<field_of>, set_field<field_of>};
   if constexpr (std::is_enum_v<Field>) {
     static_assert(!names<Field>.empty(), "list the names of the enumerators above");
     option.choices = names<Field>;

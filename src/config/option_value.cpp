@@ -36,7 +36,7 @@ double number(const OptionValue& value) {
 }
 
 bool has_kind(OptionKind kind, const OptionValue& value) { return value.index() == static_cast<std::size_t>(kind); }
-static_assert(std::is_same_v<std::variant_alternative_t<static_cast<std::size_t>(OptionKind::real), OptionValue>, double>);
+static_assert(std::is_same_v<double, std::variant_alternative_t<std::size_t(OptionKind::real), OptionValue>>);
 
 bool admissible(const Option& option, const OptionValue& value) {
   switch (option.kind) {

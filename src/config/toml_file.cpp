@@ -105,8 +105,8 @@ std::string options_to_toml(const Options& options) {
     }
     const std::string range = option.kind == OptionKind::boolean ? "" : "; " + admissible_values(option);
     const std::string unit = option.unit.empty() ? "" : fmt::format(" [{}]", option.unit);
-    text += fmt::format("{:<32}# {}{}{}\n", fmt::format("{} = {}", name_in_section(option), value_text(option, options)),
-                        option.help, unit, range);
+    const std::string assignment = fmt::format("{} = {}", name_in_section(option), value_text(option, options));
+    text += fmt::format("{:<32}# {}{}{}\n", assignment, option.help, unit, range);
   }
   return text;
 }

@@ -1,0 +1,426 @@
+"""The igsp command as a user meets it. usage: cli_test.py IGSP [unittest arguments]"""
+import json
+import os
+import pty
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+IGSP = sys.argv.pop(1)
+
+
+def write_ply(path, points, kind="<f4", count=None):
+    name = {"<f4": "float", "<f8": "double"}[kind]
+    header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points) if count is None else count}"]
+    header += [f"property {name} {axis}" for axis in "xyz"] + ["end_header", ""]
+    path.write_bytes("\n".join(header).encode() + np.asarray(points, kind).tobytes())
+
+
+def read_ply(path):
+    """Coordinates and the type they are stored in, of what igsp writes."""
+    content = path.read_bytes()
+    end = content.index(b"end_header\n") + len(b"end_header\n")
+    kind = "<f8" if b"property double x" in content[:end] else "<f4"
+    return np.frombuffer(content, kind, offset=end).reshape(-1, 3).astype(float), kind
+
+
+def rotation_z(angle):
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+
+
+def setUpModule():
+    folder = tempfile.TemporaryDirectory()
+    unittest.addModuleCleanup(folder.cleanup)
+    scans = Path(folder.name)
+    subprocess.run([IGSP, "simulate", "park", "--out", scans, "--points", "60000"], check=True,
+                   stdout=subprocess.DEVNULL)
+    CommandTest.source, CommandTest.target = scans / "station_1.ply", scans / "station_0.ply"
+    CommandTest.truth = scans / "station_1_to_0.txt"
+
+
+class CommandTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def igsp(self, *arguments, code=0):
+        run = subprocess.run([IGSP, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder)
+        self.assertEqual(run.returncode, code, f"igsp {arguments}\n{run.stdout}\n{run.stderr}")
+        return run
+
+    def refuses(self, *arguments, code, saying):
+        run = self.igsp(*arguments, code=code)
+        for word in [saying] if isinstance(saying, str) else saying:
+            self.assertIn(word, run.stderr)
+        self.assertEqual(run.stdout, "")
+        self.assertEqual(run.stderr.count("\n"), 1, run.stderr)
+
+    def file(self, name, content=b""):
+        path = self.folder / name
+        path.write_bytes(content.encode() if isinstance(content, str) else content)
+        return path
+
+    def cloud(self, name, points, **options):
+        write_ply(self.folder / name, points, **options)
+        return self.folder / name
+
+
+class Align(CommandTest):
+    def test_registers_and_writes_what_was_asked_for(self):
+        run = self.igsp("align", self.source, self.target, "-o", "a.ply", "--transform", "T.txt", "--report", "r.json")
+        self.assertTrue(run.stdout.startswith("registered: "), run.stdout)
+        for word in ["target_from_source", "confidence", "overlap", "RMSE", "chosen from both clouds", "iterations",
+                     "time"]:
+            self.assertIn(word, run.stdout)
+        self.assertEqual(run.stderr, "")  # not a terminal: no bars
+        self.assertEqual(sorted(os.listdir(self.folder)), ["T.txt", "a.ply", "r.json"])
+        matrix = np.loadtxt(self.folder / "T.txt")
+        lines = run.stdout.split("target_from_source\n")[1].split("\n")[:4]
+        np.testing.assert_array_equal(np.array([line.split() for line in lines], float), matrix)
+        report = json.loads((self.folder / "r.json").read_text())
+        np.testing.assert_array_equal(np.array(report["target_from_source"]), matrix)
+        moved, kind = read_ply(self.folder / "a.ply")
+        expected = read_ply(self.source)[0] @ matrix[:3, :3].T + matrix[:3, 3]
+        np.testing.assert_allclose(moved, expected, atol=1e-5)
+        self.assertEqual(kind, "<f4")
+        error = json.loads(self.igsp("evaluate", "--transform", "T.txt", "--truth", self.truth, "--source", self.source,
+                                     "--json").stdout)
+        self.assertLess(error["e_r_deg"], 0.5)
+        self.assertLess(error["centroid_displacement"], 0.3)
+
+    def test_report_has_all_that_is_promised(self):
+        self.igsp("align", self.source, self.target, "--report", "r.json")
+        report = json.loads((self.folder / "r.json").read_text())
+        for key in ["verdict", "reason", "confidence", "target_from_source", "overlap", "rmse", "voxel_size",
+                    "options", "iterations", "timings_s", "keypoints", "peak_memory_bytes", "version", "warnings"]:
+            self.assertIn(key, report)
+        self.assertEqual(report["verdict"], "registered")
+        self.assertEqual(np.array(report["target_from_source"]).shape, (4, 4))
+        self.assertGreater(report["overlap"], 0.3)
+        self.assertGreater(report["keypoints"]["source"], 10)
+        self.assertEqual(report["source"]["points"], len(read_ply(self.source)[0]))
+        self.assertGreater(report["peak_memory_bytes"], 1 << 20)
+        self.assertGreater(len(report["iterations"]), 0)
+        for record in report["iterations"]:
+            self.assertEqual(set(record), {"k", "w_fd", "w_ed", "t_cd", "candidate_edges", "matches", "energy",
+                                           "rotation_step_rad", "translation_step", "seconds", "target_from_source"})
+        self.assertIn("read", report["timings_s"])
+        self.assertEqual(report["options"]["degrees_of_freedom"], 6)
+        self.assertIn("pca_radius", report["options"]["keypoints"])
+
+    def test_survey_coordinates_are_written_as_doubles(self):
+        offset = np.array([500000.0, 5000000.0, 300.0])
+        source = self.cloud("s.ply", read_ply(self.source)[0] + offset, kind="<f8")
+        target = self.cloud("t.ply", read_ply(self.target)[0] + offset, kind="<f8")
+        self.igsp("align", source, target, "-o", "a.ply", "--transform", "T.txt")
+        moved, kind = read_ply(self.folder / "a.ply")
+        self.assertEqual(kind, "<f8")
+        self.igsp("align", self.source, self.target, "--transform", "near.txt")
+        near = np.loadtxt(self.folder / "near.txt")
+        expected = read_ply(self.source)[0] @ near[:3, :3].T + near[:3, 3] + offset
+        np.testing.assert_allclose(moved, expected, atol=1e-5)
+
+    def test_every_output_format_holds_the_same_points(self):
+        for name in ["a.ply", "a.pcd", "a.xyz"]:
+            self.igsp("align", self.source, self.target, "-o", name)
+            printed = self.igsp("info", name).stdout
+            self.assertIn(f"points                {len(read_ply(self.source)[0])}\n", printed)
+
+    def test_a_pair_that_is_not_registered_leaves_nothing_but_the_report(self):
+        plane = np.c_[np.random.default_rng(0).uniform(0, 10, (5000, 2)), np.zeros(5000)]
+        flat = self.cloud("flat.ply", plane)
+        old = self.file("T.txt", "old")
+        run = self.igsp("align", flat, self.target, "-o", "a.ply", "--transform", "T.txt", "--report", "r.json", code=1)
+        self.assertTrue(run.stdout.startswith("not registered: "), run.stdout)
+        self.assertIn("not written, since the pair is not registered: a.ply T.txt", run.stdout)
+        self.assertFalse((self.folder / "a.ply").exists())
+        self.assertEqual(old.read_text(), "old")
+        report = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual(report["verdict"], "not_registered")
+        self.assertGreater(len(report["reason"]), 10)
+
+    def test_a_large_cloud_is_streamed_to_nearly_the_same_answer(self):
+        self.igsp("align", self.source, self.target, "--max-points", "20000", "--transform", "T.txt",
+                  "--report", "r.json")
+        report = json.loads((self.folder / "r.json").read_text())
+        self.assertTrue(report["source"]["streamed"])
+        self.assertEqual(report["source"]["points"], len(read_ply(self.source)[0]))
+        error = json.loads(self.igsp("evaluate", "--transform", "T.txt", "--truth", self.truth, "--json").stdout)
+        self.assertLess(error["e_r_deg"], 0.5)
+        self.refuses("align", self.source, self.target, "--max-points", "20000", "-o", "a.ply", code=2,
+                     saying="-o needs all points in memory")
+
+    def test_verbose_adds_iterations_and_stages_and_quiet_drops_warnings(self):
+        verbose = self.igsp("align", self.source, self.target, "--verbose").stdout
+        self.assertIn("T_cd", verbose)
+        points = read_ply(self.source)[0]
+        points[5] = np.nan
+        source = self.cloud("s.ply", points)
+        self.assertIn("dropped 1 of", self.igsp("align", source, self.target).stderr)
+        self.assertEqual(self.igsp("align", source, self.target, "--quiet").stderr, "")
+
+
+class OptionsOfTheCommand(CommandTest):
+    def used(self, *arguments):
+        self.igsp("align", self.source, self.target, "--report", "r.json", *arguments)
+        return json.loads((self.folder / "r.json").read_text())["options"]
+
+    def test_printed_options_read_back_as_the_same(self):
+        for preset in ["default", "paper"]:
+            printed = self.igsp("options", "--preset", preset).stdout
+            config = self.file("igsp.toml", printed)
+            self.assertEqual(self.igsp("options", "--config", config).stdout, printed)
+        self.assertNotEqual(self.igsp("options").stdout, printed)
+
+    def test_file_flags_and_preset_meet_in_the_report(self):
+        config = self.file("igsp.toml", 'preset = "paper"\nthreads = 2\n[descriptor]\nradius = 8\n')
+        used = self.used("--config", config, "--threads", "1", "--voxel-size", "0.75")
+        self.assertEqual(used["search"], "direct")
+        self.assertEqual(used["threads"], 1)
+        self.assertEqual(used["descriptor"]["radius"], 8.0)
+        self.assertEqual(used["scale"]["voxel_size"], 0.75)
+        self.assertFalse(used["refinement"]["enabled"])
+
+    def test_boolean_options_have_two_flags(self):
+        self.assertIn("enabled = false", self.igsp("options", "--no-refinement").stdout)
+        self.assertIn("enabled = true", self.igsp("options", "--preset", "paper", "--refinement").stdout)
+
+    def test_mistakes_are_named_with_the_way_out(self):
+        pair = ["align", self.source, self.target]
+        for arguments, words in [
+            (["--voxelsize", "1"], ["--voxelsize", "did you mean --voxel-size?"]),
+            (["--pca-raduis=1"], "did you mean --pca-radius?"),
+            (["--pca-radius", "-1"], ["keypoints.pca_radius", "--pca-radius", "-1", "(0, 100]"]),
+            (["--pca-radius", "wide"], ['"wide"', "a number"]),
+            (["--pca-radius", "nan"], "keypoints.pca_radius"),
+            (["--threads", "1.5"], ["threads", "an integer", '"1.5"']),
+            (["--dof", "5"], "4 or 6"),
+            (["--search", "drect"], ["drect", "direct, hypotheses"]),
+            (["--preset", "papr"], ['"papr"', 'did you mean "paper"']),
+            (["--threads"], "--threads"),
+            (["--max-points", "5"], "at least 1000"),
+            (["extra.ply"], "extra.ply"),
+            (["--quiet", "--verbose"], "--verbose"),
+        ]:
+            with self.subTest(arguments):
+                self.refuses(*pair, *arguments, code=2, saying=words)
+
+    def test_unknown_commands_and_missing_arguments(self):
+        self.refuses("aling", self.source, code=2, saying="did you mean align?")
+        self.refuses("align", code=2, saying="SOURCE")
+        self.refuses("align", self.source, code=2, saying="TARGET")
+        self.refuses("--versoin", code=2, saying="did you mean --version?")
+        self.assertIn("Usage", self.igsp(code=2).stderr)
+
+    def test_a_wrong_file_of_options_is_named_with_its_line(self):
+        pair = ["align", self.source, self.target, "--config"]
+        unknown = self.file("unknown.toml", "threads = 1\n[keypoints]\npca_raduis = 6.0\n")
+        self.refuses(*pair, unknown, code=2, saying=["unknown.toml:3:", 'did you mean "keypoints.pca_radius"?'])
+        outside = self.file("outside.toml", "[keypoints]\npca_radius = 0\n")
+        self.refuses(*pair, outside, code=2, saying=["outside.toml:2:", "keypoints.pca_radius", "(0, 100]"])
+        broken = self.file("broken.toml", "threads = 1\nsearch =\n")
+        self.refuses(*pair, broken, code=3, saying="broken.toml:2:")
+        self.refuses(*pair, "nowhere.toml", code=3, saying="nowhere.toml")
+        self.refuses(*pair, unknown, "--preset", "paper", code=2, saying=["--config", "--preset"])
+
+    def test_help_names_every_option_with_range_and_default(self):
+        self.assertRegex(self.igsp("--version").stdout, r"^igsp \d+\.\d+\.\d+\n$")
+        for command in ["align", "evaluate", "simulate", "info", "options"]:
+            self.assertIn(f"igsp {command} ", self.igsp(command, "--help").stdout.split("Example")[1])
+        text = " ".join(self.igsp("align", "--help").stdout.split())
+        self.assertIn("--pca-radius NUMBER r_f: sphere of the principal component analysis [voxels]; in (0, 100]; "
+                      "default 6", text)
+        for flag in ["--voxel-size", "--dof", "--threads", "--no-refinement", "--config", "--force"]:
+            self.assertIn(f"{flag} ", text)
+
+
+class BadInput(CommandTest):
+    def as_either_cloud(self, path, words):
+        self.refuses("align", path, self.target, "-o", "a.ply", "--report", "r.json", code=3, saying=words)
+        self.refuses("align", self.source, path, code=3, saying=words)
+        self.assertFalse((self.folder / "a.ply").exists() or (self.folder / "r.json").exists())
+
+    def test_files_that_are_no_clouds(self):
+        self.as_either_cloud("nowhere.ply", "nowhere.ply")
+        self.as_either_cloud(self.folder, str(self.folder))
+        for name in ["empty.ply", "empty.pcd", "empty.xyz"]:
+            self.as_either_cloud(self.file(name), name)
+        self.as_either_cloud(self.file("magic.ply", "hello\nworld\n"), "magic.ply: byte offset 0")
+        self.as_either_cloud(self.file("text.xyz", "1 2 3\n1 two 3\n"), ["text.xyz", "line 2"])
+
+    def test_bodies_that_end_early(self):
+        points = np.random.default_rng(0).normal(size=(1000, 3))
+        truncated = self.cloud("truncated.ply", points)
+        os.truncate(truncated, truncated.stat().st_size - 5)
+        self.as_either_cloud(truncated, ["truncated.ply", "byte"])
+        self.as_either_cloud(self.cloud("count.ply", points, count=10**12), ["count.ply", "1000000000000"])
+
+    def test_a_header_of_a_gigabyte(self):
+        path = self.file("header.ply", "ply\nformat ascii 1.0\ncomment ")
+        os.truncate(path, 1 << 30)  # sparse: takes no room on the disk
+        self.as_either_cloud(path, "header.ply")
+
+    def test_clouds_without_extent(self):
+        point = np.array([[1.0, 2.0, 3.0]])
+        for points, words in [(np.full((7, 3), np.nan), ["no finite point", "7 dropped"]), (point, "single point"),
+                              (point.repeat(1000000, 0), "1000000 points are equal")]:
+            self.as_either_cloud(self.cloud("cloud.ply", points), ["cloud.ply", *np.atleast_1d(words)])
+
+    def test_clouds_without_shape_are_answered(self):
+        line = np.linspace(0, 10, 5000)[:, None] * np.array([[1.0, 2.0, 3.0]])
+        plane = np.c_[np.random.default_rng(0).uniform(0, 10, (5000, 2)), np.zeros(5000)]
+        two = np.array([[0.0, 0, 0], [1, 1, 1]])
+        duplicates = np.random.default_rng(0).normal(size=(10, 3)).repeat(100000, 0)
+        for points in [line, plane, two, duplicates]:
+            path = self.cloud("shapeless.ply", points)
+            self.assertIn("not registered", self.igsp("align", path, path, code=1).stdout)
+
+    def test_different_units(self):
+        millimetres = self.cloud("mm.ply", 1000 * read_ply(self.source)[0])
+        run = subprocess.run([IGSP, "align", millimetres, self.target, "--report", self.folder / "r.json"],
+                             capture_output=True, text=True)
+        self.assertEqual(run.returncode, 1, run.stderr)
+        self.assertIn("different units? Extents differ by a factor of about 1000", run.stderr)
+        self.assertIn("different units", json.loads((self.folder / "r.json").read_text())["warnings"][0])
+
+    def test_outputs_that_cannot_be_written_are_refused_before_reading(self):
+        for flag in ["-o", "--transform", "--report"]:
+            for path in ["nowhere/x.ply", "/proc/x.ply", "/dev/full"]:
+                self.refuses("align", "missing.ply", "missing.ply", flag, path, code=3, saying=path)
+            self.refuses("align", "missing.ply", "missing.ply", flag, self.folder, code=3, saying=str(self.folder))
+        self.refuses("align", "missing.ply", "missing.ply", "-o", "x.foo", code=3, saying=["x.foo", ".ply"])
+
+    def test_an_output_never_replaces_an_input_or_another_output(self):
+        before = self.source.read_bytes()
+        self.refuses("align", self.source, self.target, "-o", self.source, code=2, saying=["-o", "SOURCE"])
+        self.refuses("align", self.source, self.target, "--report", "x", "--transform", "./x", code=2,
+                     saying="--report and --transform")
+        self.assertEqual(self.source.read_bytes(), before)
+
+
+class Terminal(CommandTest):
+    def under_terminal(self, arguments, wait_for=None, then=None):
+        """Exit code and what was sent to the terminal that stands in for standard error. When `wait_for` was sent,
+        the process gets the signal `then`."""
+        reader, writer = pty.openpty()
+        process = subprocess.Popen([IGSP, *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=writer,
+                                   cwd=self.folder)
+        os.close(writer)
+        sent = b""
+        while True:
+            try:
+                piece = os.read(reader, 4096)
+            except OSError:  # the other end is closed
+                break
+            sent += piece
+            if wait_for and wait_for in sent:
+                process.send_signal(then)
+                wait_for = None
+        os.close(reader)
+        return process.wait(), sent.decode()
+
+    def test_a_bar_per_stage(self):
+        code, sent = self.under_terminal(["align", self.source, self.target])
+        self.assertEqual(code, 0)
+        bars = [line.split("\r")[-1] for line in sent.replace("\r\n", "\n").strip().split("\n")]
+        self.assertGreater(len(bars), 4)
+        for bar in bars:
+            self.assertRegex(bar, r"^\w[\w -]+ \[#+\] 100% +\d+\.\d s$")
+        code, sent = self.under_terminal(["align", self.source, self.target, "--quiet"])
+        self.assertEqual((code, sent), (0, ""))
+
+    def test_an_interrupt_stops_the_run_and_leaves_no_file(self):
+        # With this many voxels the run takes minutes when it is not interrupted.
+        long_run = ["align", self.source, self.target, "--voxel-size", "0.05", "--pca-radius", "60",
+                    "--descriptor-radius", "60", "-o", "a.ply", "--transform", "T.txt", "--report", "r.json"]
+        for stage, number in [(b"read source", signal.SIGTERM), (b"keypoints", signal.SIGINT)]:
+            code, sent = self.under_terminal(long_run, wait_for=stage, then=number)
+            self.assertEqual(code, 130, sent)
+            self.assertIn("igsp: interrupted", sent)
+            self.assertEqual(os.listdir(self.folder), [])
+
+
+class Evaluate(CommandTest):
+    def matrix(self, name, rotation, translation):
+        rows = np.eye(4)
+        rows[:3, :3], rows[:3, 3] = rotation, translation
+        np.savetxt(self.folder / name, rows, fmt="%.17g")
+        return name
+
+    def test_numbers_by_hand(self):
+        # 90 degrees about z and a shift, against the identity: the centroid (3, 0, 0) goes to (0, 3, 0) + (0, 0, 4).
+        self.matrix("T.txt", rotation_z(np.pi / 2), [0, 0, 4])
+        self.matrix("truth.txt", np.eye(3), [0, 0, 0])
+        cloud = self.cloud("s.ply", [[2, 0, 0], [4, 0, 0], [3, 1, 0], [3, -1, 0]])
+        arguments = ["evaluate", "--transform", "T.txt", "--truth", "truth.txt"]
+        error = json.loads(self.igsp(*arguments, "--source", cloud, "--json").stdout)
+        self.assertAlmostEqual(error["e_r_deg"], 90, 10)
+        self.assertAlmostEqual(error["e_r_mdeg"], 90000, 7)
+        self.assertAlmostEqual(error["e_t"], 4, 12)
+        self.assertAlmostEqual(error["centroid_displacement"], np.sqrt(9 + 9 + 16), 12)
+        printed = self.igsp(*arguments, "--source", cloud).stdout
+        self.assertIn("e_r  90 deg = 90000 mdeg", printed)
+        self.assertIn("e_t  4 ", printed)
+        self.assertIn("centroid displacement  5.83095", printed)
+        self.assertIsNone(json.loads(self.igsp(*arguments, "--json").stdout)["centroid_displacement"])
+
+    def test_translation_error_is_that_of_the_difference(self):
+        # Eq. 12: dT = T T_gt^-1; with T_gt = (90 degrees, t) and T = (90 degrees, t + (0, 0, 1)), e_t = 1.
+        self.matrix("T.txt", rotation_z(np.pi / 2), [5, 6, 8])
+        self.matrix("truth.txt", rotation_z(np.pi / 2), [5, 6, 7])
+        error = json.loads(self.igsp("evaluate", "--transform", "T.txt", "--truth", "truth.txt", "--json").stdout)
+        self.assertAlmostEqual(error["e_t"], 1, 12)
+        self.assertAlmostEqual(error["e_r_deg"], 0, 12)
+
+    def test_small_angles_are_not_lost(self):
+        self.matrix("T.txt", rotation_z(1e-9), [0, 0, 0])
+        self.matrix("truth.txt", np.eye(3), [0, 0, 0])
+        error = json.loads(self.igsp("evaluate", "--transform", "T.txt", "--truth", "truth.txt", "--json").stdout)
+        self.assertAlmostEqual(error["e_r_deg"] / np.degrees(1e-9), 1, 6)
+
+    def test_what_is_no_transformation(self):
+        self.matrix("truth.txt", np.eye(3), [0, 0, 0])
+        self.file("short.txt", "1 0 0\n")
+        for name in ["nowhere.txt", "short.txt", self.matrix("scaled.txt", 2 * np.eye(3), [0, 0, 0])]:
+            self.refuses("evaluate", "--transform", name, "--truth", "truth.txt", code=3, saying=name)
+
+
+class SimulateAndInfo(CommandTest):
+    def test_simulated_files_and_the_commands_it_suggests(self):
+        arguments = ["simulate", "indoor", "--points", "5000", "--stations", "3", "--seed", "1", "--out"]
+        run = self.igsp(*arguments, "new/scans")
+        expected = ["station_0.ply", "station_1.ply", "station_1_to_0.txt", "station_2.ply", "station_2_to_0.txt"]
+        self.assertEqual(sorted(os.listdir(self.folder / "new/scans")), expected)
+        self.assertIn("try: igsp align new/scans/station_1.ply new/scans/station_0.ply", run.stdout)
+        self.igsp(*arguments, "again")
+        for name in os.listdir(self.folder / "again"):
+            first, second = self.folder / "new/scans" / name, self.folder / "again" / name
+            self.assertEqual(first.read_bytes(), second.read_bytes())
+
+    def test_simulation_mistakes(self):
+        self.refuses("simulate", "prak", "--out", "x", code=2, saying=["prak", "park"])
+        self.refuses("simulate", "park", "--out", "x", "--stations", "0", code=2, saying="stations")
+        self.refuses("simulate", "park", code=2, saying="--out")
+        self.refuses("simulate", "park", "--out", self.file("file"), code=3, saying="file")
+
+    def test_info_by_hand(self):
+        x, y = np.meshgrid(np.arange(40) * 0.5, np.arange(40) * 0.5)
+        points = np.c_[x.ravel(), y.ravel(), np.zeros(1600)] + [100.0, 200.0, 300.0]
+        points[0] = np.nan
+        printed = self.igsp("info", self.cloud("grid.ply", points)).stdout
+        for line in ["PLY, binary little endian", "1599 and 1 dropped", "19.5 x 19.5 x 0",
+                     "from                  100 200 300\n", "to                    119.5 219.5 300\n",
+                     "spacing               0.5\n", "suggested voxel size"]:
+            self.assertIn(line, printed)
+        self.refuses("info", "nowhere.ply", code=3, saying="nowhere.ply")
+
+
+if __name__ == "__main__":
+    unittest.main()
