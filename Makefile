@@ -15,7 +15,10 @@ build: setup
 	cmake --preset release
 	cmake --build --preset release
 
-demo: build
+# Only the command, not the tests: an answer soon after a fresh clone.
+demo: setup
+	cmake --preset release
+	cmake --build --preset release --target igsp_app
 	$(igsp) simulate park --out $(demo)
 	$(igsp) align $(demo)/station_1.ply $(demo)/station_0.ply --transform $(demo)/estimate.txt
 	$(igsp) evaluate --transform $(demo)/estimate.txt --truth $(demo)/station_1_to_0.txt --source $(demo)/station_1.ply
