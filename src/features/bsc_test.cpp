@@ -189,7 +189,7 @@ void compare_with_reference(const Points& support, const Eigen::Matrix3d& frame,
     for (int cell = 0; cell < bsc::cells; ++cell) {
       const bool differs = bit_of(descriptor, plane * bsc::cells + cell) != (maps.density[cell] > 0.1);
       agreement.occupancy += differs;
-      if (std::abs(maps.density[cell] - 0.1) < 0.05) continue;
+      if (std::abs(maps.density[cell] - 0.1) < 0.01) continue;
       ++agreement.away;
       agreement.occupancy_away += differs;
     }
