@@ -97,7 +97,7 @@ void refine(const CommonFrame& frame, const Options& options, StageClock& clock,
   }
   const Linearisation at_pose = linearise_at(fine_source, fine_target, outcome.target_from_source,
                                              fine_radii.back() * v, fine_points);
-  outcome.precision = precision_of(at_pose, size_of(fine_source));
+  outcome.precision = precision_of(at_pose);
 }
 
 void finish(CommonFrame& frame, const Options& options, StageClock& clock, SearchOutcome& outcome) {

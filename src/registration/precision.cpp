@@ -5,16 +5,22 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "registration/surface_contact.hpp"
+
 namespace igsp {
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-// A direction is free when moving along it changes distances to the surface by less than this share of the motion (root
-// mean square). Normals of simulated planes, spheres and cylinders stay below 0.03, scenes with corners above 0.08.
-constexpr double free_share = 0.04;
-constexpr std::size_t slippage_points = 1500;
+// Only directions that the normal equations hardly see are tried: the root mean square change of the distances per unit
+// of motion. Scenes with corners lie above 0.2, an endless corridor at 0.01 to 0.05; stray normals of sparse scan lines
+// lift a plane's second direction to 0.25, so the equations alone do not decide.
+constexpr double weak_direction = 0.3;
+constexpr double trial_motion = 8.0;        // voxels
+constexpr double unchanged_contact = 0.975;  // corridors, cylinders, planes: 0.99 and more; others: at most 0.93
+constexpr double search_radius = 1.5;       // voxels
+constexpr std::size_t max_points = 1500;
 
 std::string describe(const Vector6& motion) {
   const Eigen::Vector3d rotation = motion.head<3>(), translation = motion.tail<3>();
@@ -31,64 +37,67 @@ std::string describe(const Vector6& motion) {
   return (along < 0.3 ? "rotation about " : "screw motion about ") + axis(rotation);
 }
 
-// `mean` is J^T J averaged over points with unit normals and rotations scaled by the size.
-std::vector<FreeDirection> free_directions(const Matrix6& mean) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(mean);
-  std::vector<FreeDirection> found;
-  for (int i = 0; i < 6; ++i) {
-    if (solver.eigenvalues()[i] > free_share * free_share) break;
-    const Vector6 motion = solver.eigenvectors().col(i);
-    found.push_back({motion, describe(motion)});
-  }
-  return found;
-}
-
-Eigen::Vector3d centre_of(const Surface& surface) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < surface.size(); ++i) sum += surface.point(i);
-  return sum / std::max<double>(1.0, static_cast<double>(surface.size()));
-}
-
-Matrix6 unit_rotations(const Matrix6& hessian, double size) {
-  Vector6 scale;
-  scale << Eigen::Vector3d::Constant(1 / size), Eigen::Vector3d::Ones();
-  return scale.asDiagonal() * hessian * scale.asDiagonal();
+// `motion`: rotation scaled by `size`, translation.
+Transformation motion_about(const Eigen::Vector3d& centre, const Vector6& motion, double size) {
+  const Eigen::Vector3d rotation = motion.head<3>() / size;
+  Transformation result = Transformation::Identity();
+  if (rotation.norm() > 0) result.linear() = Eigen::AngleAxisd(rotation.norm(), rotation.normalized()).toRotationMatrix();
+  result.translation() = centre + motion.tail<3>() - result.linear() * centre;
+  return result;
 }
 
 }  // namespace
 
-Precision precision_of(const Linearisation& linearisation, double size) {
+double size_of(PointView points) {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) centre += point / static_cast<double>(points.size());
+  double squares = 0;
+  for (const Eigen::Vector3d& point : points) squares += (point - centre).squaredNorm();
+  return points.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(points.size()));
+}
+
+Precision precision_of(const Linearisation& linearisation) {
   Precision precision;
   precision.centre = linearisation.centre;
   if (linearisation.pairs == 0 || !(linearisation.residual_variance > 0)) return precision;
   // Every pair is met from both sides, so half of them are independent.
   precision.information = 0.5 * linearisation.hessian / linearisation.residual_variance;
-  const Matrix6 scaled = unit_rotations(linearisation.hessian, size);
-  precision.free_directions = free_directions(scaled / scaled.bottomRightCorner<3, 3>().trace());
-  if (precision.free_directions.empty()) precision.covariance = precision.information.ldlt().solve(Matrix6::Identity());
+  const Eigen::LDLT<Matrix6> solver(precision.information);
+  if (solver.info() == Eigen::Success && solver.isPositive() && solver.rcond() > 1e-15) {
+    precision.covariance = solver.solve(Matrix6::Identity());
+  }
   return precision;
 }
 
-double size_of(const Surface& surface) {
-  const Eigen::Vector3d centre = centre_of(surface);
-  double squares = 0;
-  for (std::size_t i = 0; i < surface.size(); ++i) squares += (surface.point(i) - centre).squaredNorm();
-  return surface.size() > 0 ? std::sqrt(squares / static_cast<double>(surface.size())) : 0.0;
-}
+std::vector<FreeDirection> free_directions(const PreparedCloud& moved, const PreparedCloud& fixed,
+                                           const Transformation& fixed_from_moved) {
+  const double v = fixed.features.voxel_size;
+  const double size = size_of(moved.features.points);
+  Surface moved_surface(moved.features.points, moved.grid, moved.features.normals);
+  Surface fixed_surface(fixed.features.points, fixed.grid, fixed.features.normals);
+  const Linearisation at_pose =
+      linearise_at(moved_surface, fixed_surface, fixed_from_moved, search_radius * v, max_points);
+  if (at_pose.pairs == 0 || !(size > 0)) return {};
+  Vector6 scale;
+  scale << Eigen::Vector3d::Constant(1 / size), Eigen::Vector3d::Ones();
+  const Matrix6 scaled = scale.asDiagonal() * at_pose.hessian * scale.asDiagonal();
+  // Normals are unit vectors, so the trace of the translations is the sum of the weights.
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled / scaled.bottomRightCorner<3, 3>().trace());
 
-std::vector<FreeDirection> slippable_motions(Surface& surface) {
-  const double size = size_of(surface);
-  if (!(size > 0)) return {};
-  const Eigen::Vector3d centre = centre_of(surface);
-  Matrix6 sum = Matrix6::Zero();
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < surface.size(); i += std::max<std::size_t>(1, surface.size() / slippage_points)) {
-    Vector6 jacobian;
-    jacobian << (surface.point(i) - centre).cross(surface.normal(i)), surface.normal(i);
-    sum += jacobian * jacobian.transpose();
-    ++count;
+  const double contact = surface_contact(moved, fixed, fixed_from_moved).share;
+  const auto still_touches = [&](const Vector6& motion) {
+    const Transformation tried = motion_about(at_pose.centre, motion, size) * fixed_from_moved;
+    return surface_contact(moved, fixed, tried).share > unchanged_contact * contact &&
+           surface_contact(fixed, moved, tried.inverse()).share > unchanged_contact * contact;
+  };
+  std::vector<FreeDirection> found;
+  for (int i = 0; i < 6 && solver.eigenvalues()[i] < weak_direction * weak_direction; ++i) {
+    const Vector6 motion = solver.eigenvectors().col(i);
+    if (still_touches(trial_motion * v * motion) && still_touches(-trial_motion * v * motion)) {
+      found.push_back({motion, describe(motion)});
+    }
   }
-  return free_directions(unit_rotations(sum, size) / static_cast<double>(count));
+  return found;
 }
 
 }  // namespace igsp

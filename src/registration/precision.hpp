@@ -2,18 +2,21 @@
 
 #include "igsp/result.hpp"
 #include "registration/point_to_plane.hpp"
+#include "registration/prepared_cloud.hpp"
 
 namespace igsp {
 
-/// Root mean square distance of a surface's points from their centroid: the length that makes a rotation of one radian
+/// Root mean square distance of the points from their centroid: the length that makes a rotation of one radian
 /// comparable with a translation.
-double size_of(const Surface& surface);
+double size_of(PointView points);
 
-/// Information, covariance and free directions of a pose from the normal equations at it.
-Precision precision_of(const Linearisation& linearisation, double size);
+/// Information and covariance of a pose from the normal equations at it; free directions are left empty.
+Precision precision_of(const Linearisation& linearisation);
 
-/// Motions that slide a surface along itself (Gelfand et al. 2003): what no registration of it could fix. In the
-/// surface's own frame.
-std::vector<FreeDirection> slippable_motions(Surface& surface);
+/// Motions of 8 voxels after which the surfaces touch as much as before: what the surfaces do not fix. Candidates are
+/// the weakest eigenvectors of the normal equations at the pose. Called with one cloud twice and the identity, these are
+/// the motions that slide it along itself. In the coordinates of `fixed`.
+std::vector<FreeDirection> free_directions(const PreparedCloud& moved, const PreparedCloud& fixed,
+                                           const Transformation& fixed_from_moved);
 
 }  // namespace igsp

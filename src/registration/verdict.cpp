@@ -55,12 +55,6 @@ std::vector<Rival> true_rivals(const CommonFrame& frame, const SearchOutcome& ou
   return rivals;
 }
 
-std::vector<FreeDirection> free_in_the_scene(const CommonFrame& frame) {
-  const PreparedCloud& target = frame.target();
-  Surface surface(target.features.points, target.grid, target.features.normals);
-  return slippable_motions(surface);
-}
-
 }  // namespace
 
 void judge(CommonFrame& frame, const SearchOutcome& outcome, Result& result) {
@@ -68,7 +62,7 @@ void judge(CommonFrame& frame, const SearchOutcome& outcome, Result& result) {
   result.has_estimate = outcome.has_estimate;
   if (!outcome.has_estimate) {
     result.reason = why_no_estimate(result);
-    result.precision.free_directions = free_in_the_scene(frame);
+    result.precision.free_directions = free_directions(frame.target(), frame.target(), Transformation::Identity());
     if (!result.precision.free_directions.empty()) {
       result.reason += "; the target alone leaves free: " + free_motions(result.precision.free_directions);
     }
@@ -79,6 +73,7 @@ void judge(CommonFrame& frame, const SearchOutcome& outcome, Result& result) {
   result.overlap_target = pose.target_on_source.overlap;
   result.rmse = pose.source_on_target.rmse;
   result.precision = outcome.precision;
+  result.precision.free_directions = free_directions(frame.source(), frame.target(), outcome.target_from_source);
   result.evidence = {pose.mutual_matches, pose.agreeing_matches,
                      std::sqrt(pose.source_on_target.share * pose.target_on_source.share), pose.quality};
 
