@@ -95,11 +95,24 @@ class Align(CommandTest):
         self.assertLess(error["e_r_deg"], 0.5)
         self.assertLess(error["centroid_displacement"], 0.3)
 
+    def test_starts_from_a_guess_and_refuses_a_wrong_one(self):
+        self.igsp("align", self.source, self.target, "--initial", self.truth, "--transform", "T.txt")
+        error = json.loads(self.igsp("evaluate", "--transform", "T.txt", "--truth", self.truth, "--json").stdout)
+        self.assertLess(error["e_r_deg"], 0.5)
+        wrong = np.loadtxt(self.truth)
+        wrong[:3, 3] += 1000.0
+        np.savetxt(self.folder / "wrong.txt", wrong, fmt="%.17g")
+        self.igsp("align", self.source, self.target, "--initial", "wrong.txt", code=1)
+        self.refuses("align", self.source, self.target, "--initial", "nowhere.txt", code=3, saying="nowhere.txt")
+        self.refuses("align", self.source, self.target, "--initial", "T.txt", "--transform", "T.txt", code=2,
+                     saying="--transform and --initial")
+
     def test_report_has_all_that_is_promised(self):
         self.igsp("align", self.source, self.target, "--report", "r.json")
         report = json.loads((self.folder / "r.json").read_text())
         for key in ["verdict", "reason", "confidence", "target_from_source", "overlap", "rmse", "voxel_size",
-                    "options", "iterations", "timings_s", "keypoints", "peak_memory_bytes", "version", "warnings"]:
+                    "options", "iterations", "timings_s", "keypoints", "peak_memory_bytes", "version", "warnings",
+                    "evidence", "runner_up", "precision"]:
             self.assertIn(key, report)
         self.assertEqual(report["verdict"], "registered")
         self.assertEqual(np.array(report["target_from_source"]).shape, (4, 4))
@@ -111,6 +124,8 @@ class Align(CommandTest):
         for record in report["iterations"]:
             self.assertEqual(set(record), {"k", "w_fd", "w_ed", "t_cd", "candidate_edges", "matches", "energy",
                                            "rotation_step_rad", "translation_step", "seconds", "target_from_source"})
+        self.assertEqual(np.array(report["precision"]["information"]).shape, (6, 6))
+        self.assertGreater(report["evidence"]["agreeing_matches"], 3)
         self.assertIn("read", report["timings_s"])
         self.assertEqual(report["options"]["degrees_of_freedom"], 6)
         self.assertIn("pca_radius", report["options"]["keypoints"])

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <iostream>
+#include <optional>
 
 #include "answer.hpp"
 #include "cloud_input.hpp"
@@ -25,6 +26,7 @@ namespace fs = std::filesystem;
 struct AlignSettings {
   fs::path source, target;
   fs::path aligned, transformation, report;  // empty: not wanted
+  fs::path initial;                          // empty: no guess
   std::int64_t max_points = 20'000'000;
   bool force = false, quiet = false, verbose = false;
   std::shared_ptr<OptionFlags> option_flags;
@@ -43,10 +45,11 @@ bool same_file(const fs::path& a, const fs::path& b) {
 void check_outputs(const AlignSettings& settings) {
   const std::vector<std::pair<std::string_view, fs::path>> files = {{"SOURCE", settings.source},
                                                                     {"TARGET", settings.target},
+                                                                    {"--initial", settings.initial},
                                                                     {"-o", settings.aligned},
                                                                     {"--transform", settings.transformation},
                                                                     {"--report", settings.report}};
-  for (std::size_t i = 2; i < files.size(); ++i) {
+  for (std::size_t i = 3; i < files.size(); ++i) {  // after the inputs
     const auto& [name, path] = files[i];
     if (path.empty()) continue;
     for (std::size_t j = 0; j < i; ++j) {
@@ -125,6 +128,8 @@ int run_align(const AlignSettings& settings) {
     throw InvalidArgument(fmt::format("--max-points is {}; it must be at least 1000", settings.max_points));
   }
   check_outputs(settings);
+  std::optional<Transformation> initial;
+  if (!settings.initial.empty()) initial = read_transformation(settings.initial);
   ProgressBar bar(!settings.quiet);
   const ProgressCallback progress = bar.callback();
   const auto max_points = static_cast<std::size_t>(settings.max_points);
@@ -137,7 +142,8 @@ int run_align(const AlignSettings& settings) {
   const std::vector<std::string> warnings = warnings_about(source, target);
   stream_large_clouds(source, target, options.scale, progress);
   const double read = now_s();
-  Result result = align(source.points, target.points, options, progress);
+  Result result = initial ? align(source.points, target.points, *initial, options, progress)
+                          : align(source.points, target.points, options, progress);
   stop_if_interrupted();
   bar.finish();
   result.source.points = source.total;
@@ -172,6 +178,8 @@ void add_align_command(CLI::App& app, Command& command) {
       ->type_name("FILE");
   align->add_option("--transform", settings->transformation, "write target_from_source, 4x4 text")->type_name("FILE");
   align->add_option("--report", settings->report, "write the whole answer as JSON, whatever the verdict")
+      ->type_name("FILE");
+  align->add_option("--initial", settings->initial, "start from this target_from_source, 4x4 text, instead of a search")
       ->type_name("FILE");
   align->add_flag("--force", settings->force, "write -o and --transform also for an estimate that is not registered");
   align->add_option("--max-points", settings->max_points,

@@ -31,17 +31,43 @@ Json to_json(const IterationRecord& record) {
           {"target_from_source", cli::to_json(record.target_from_source)}};
 }
 
+Json rows(const auto& matrix) {
+  Json all = Json::array();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(matrix(i, j));
+    all.push_back(row);
+  }
+  return all;
+}
+
+Json to_json(const Evidence& evidence) {
+  return {{"mutual_matches", evidence.mutual_matches},
+          {"agreeing_matches", evidence.agreeing_matches},
+          {"contact_share", evidence.contact_share},
+          {"quality", evidence.quality},
+          {"rival_odds", evidence.rival_odds}};
+}
+
+Json to_json(const std::optional<RunnerUp>& runner_up) {
+  if (!runner_up) return nullptr;
+  return {{"target_from_source", rows(runner_up->target_from_source.matrix())}, {"share", runner_up->share}};
+}
+
+Json to_json(const Precision& precision) {
+  Json free_directions = Json::array();
+  for (const FreeDirection& free : precision.free_directions) {
+    free_directions.push_back({{"motion", rows(free.motion.transpose())[0]}, {"description", free.description}});
+  }
+  return {{"centre", rows(precision.centre.transpose())[0]},
+          {"information", rows(precision.information)},
+          {"covariance", rows(precision.covariance)},
+          {"free_directions", free_directions}};
+}
+
 }  // namespace
 
-Json to_json(const Transformation& transformation) {
-  Json rows = Json::array();
-  for (int i = 0; i < 4; ++i) {
-    Json row = Json::array();
-    for (int j = 0; j < 4; ++j) row.push_back(transformation.matrix()(i, j));
-    rows.push_back(row);
-  }
-  return rows;
-}
+Json to_json(const Transformation& transformation) { return rows(transformation.matrix()); }
 
 Json to_json(const Options& options) {
   Json json = Json::object();
@@ -65,6 +91,9 @@ Json align_report(const Result& result, const CloudInput& source, const CloudInp
   json["overlap_source"] = result.overlap_source;
   json["overlap_target"] = result.overlap_target;
   json["rmse"] = result.rmse;
+  json["evidence"] = to_json(result.evidence);
+  json["runner_up"] = to_json(result.runner_up);
+  json["precision"] = to_json(result.precision);
   json["voxel_size"] = result.voxel_size;
   json["source"] = to_json(source, result.source);
   json["target"] = to_json(target, result.target);
