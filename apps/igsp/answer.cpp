@@ -57,9 +57,6 @@ std::string answer_text(const Result& result, bool voxel_size_given, double seco
     text += fmt::format("overlap     {:.3f} (source {:.3f}, target {:.3f})\n", result.overlap(), result.overlap_source,
                         result.overlap_target);
     text += fmt::format("RMSE        {:.4g}\n", result.rmse);
-    for (const FreeDirection& free : result.precision.free_directions) {
-      text += fmt::format("not fixed   {}: the surfaces allow it\n", free.description);
-    }
   }
   text += fmt::format("voxel size  {:.6g} ({})\n", result.voxel_size,
                       voxel_size_given ? "given" : "chosen from both clouds");
