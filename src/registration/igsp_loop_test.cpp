@@ -39,9 +39,9 @@ Descriptor with_changed_bits(Random& random, Descriptor descriptor, int count) {
   return descriptor;
 }
 
-/// `size` keypoints, half of which the target has as well: moved, with a few bits changed, under another sign variant.
-/// The other half of both is clutter.
-Pair half_clutter(std::uint64_t seed, std::size_t size, const Transformation& truth, int variants = 4) {
+/// `size` keypoints, all or half of which the target has as well: moved, with a few bits changed, under another sign
+/// variant. The others of both are clutter.
+Pair make_pair(std::uint64_t seed, std::size_t size, const Transformation& truth, int variants, bool clutter) {
   Random random(seed);
   Pair pair;
   pair.truth = truth;
@@ -50,7 +50,7 @@ Pair half_clutter(std::uint64_t seed, std::size_t size, const Transformation& tr
   std::vector<Descriptor> own;
   for (std::size_t i = 0; i < size; ++i) {
     own.push_back(testing::random_descriptor(random));
-    const bool shared = i % 2 == 0;
+    const bool shared = !clutter || i % 2 == 0;
     pair.target.push_back(shared ? truth * pair.source[i] : truth * random.in_cube(3));
     pair.target_descriptors.push_back(
         shared ? flipped(with_changed_bits(random, own[i], 15), random.integer(0, variants - 1))
@@ -58,6 +58,13 @@ Pair half_clutter(std::uint64_t seed, std::size_t size, const Transformation& tr
   }
   pair.source_variants = sign_variants(own, variants);
   return pair;
+}
+
+Pair half_clutter(std::uint64_t seed, std::size_t size, const Transformation& truth, int variants = 4) {
+  return make_pair(seed, size, truth, variants, true);
+}
+Pair moved_copy(std::uint64_t seed, std::size_t size, const Transformation& truth) {
+  return make_pair(seed, size, truth, 4, false);
 }
 
 Transformation any_motion(std::uint64_t seed) {
@@ -154,6 +161,37 @@ TEST(IgspLoop, RecordsWhatHappened) {
   };
   EXPECT_TRUE(small(outcome.iterations.back()));
   EXPECT_TRUE(std::none_of(outcome.iterations.begin(), outcome.iterations.end() - 1, small));
+}
+
+// The first step puts a copy into place: what is left of the distances is 0, and Eq. 11 sees the bits alone.
+TEST(IgspLoop, TakesTheThresholdFromResidualsAfterTheStep) {
+  const Pair pair = moved_copy(12, 200, any_motion(12));
+  const Options options = loop_options();
+  const LoopOutcome outcome = run(pair, options);
+  ASSERT_GE(outcome.iterations.size(), 2u);
+  const IterationRecord &first = outcome.iterations[0], &second = outcome.iterations[1];
+  ASSERT_LT(error(first.target_from_source, pair.truth), 1e-9);
+  const double matches = static_cast<double>(first.matches);
+  const double mean_fd = (first.energy - first.t_cd / 2 * (400 - 2 * matches)) / matches;  // Eq. 1 at W_ed = 0
+  EXPECT_NEAR(second.t_cd, options.energy.p3 * second.w_fd * mean_fd, 1e-6);
+}
+
+// A pure translation turns nothing, a rotation about the centroid moves it nowhere: neither is convergence.
+TEST(IgspLoop, ConvergesOnlyWhenBothStepsAreSmall) {
+  const Pair still = moved_copy(13, 200, Transformation::Identity());
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : still.source) centroid += point / static_cast<double>(still.source.size());
+  const Eigen::Translation3d there(centroid);
+  const Eigen::AngleAxisd turn(1.0, Eigen::Vector3d(1, 2, 3).normalized());
+  for (const Transformation& truth : {Transformation(Eigen::Translation3d(3, 4, 5)),
+                                      Transformation(there * turn * there.inverse())}) {
+    const LoopOutcome outcome = run(moved_copy(13, 200, truth));
+    EXPECT_EQ(outcome.termination, Termination::converged);
+    EXPECT_EQ(outcome.iterations.size(), 2u);
+    const IterationRecord& first = outcome.iterations.front();
+    EXPECT_LT(std::min(first.rotation_step_rad, first.translation_step), 1e-9);
+  }
+  EXPECT_EQ(run(still).iterations.size(), 1u);
 }
 
 TEST(IgspLoop, StopsAtTheLastIteration) {
