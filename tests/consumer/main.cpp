@@ -7,7 +7,7 @@
 int main() {
   igsp::SimulationOptions simulation;
   simulation.points = 20000;
-  const auto scans = igsp::simulate("park", simulation);
+  const auto scans = igsp::simulate("object", simulation);
 
   const std::filesystem::path path = "source.pcd";
   igsp::write_points(path, scans[0].points, {.format = igsp::FileFormat::pcd_binary_compressed});
@@ -20,5 +20,5 @@ int main() {
             << result.reason << "\n"
             << result.target_from_source.matrix() << "\nerror " << error.rotation_rad << " rad, " << error.translation
             << " m\n";
-  return result.registered && error.rotation_rad < 0.01 && error.translation < 0.1 ? 0 : 1;
+  return result.registered && error.rotation_rad < 0.01 && error.translation < 0.002 ? 0 : 1;
 }
