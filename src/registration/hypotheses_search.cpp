@@ -23,8 +23,8 @@ constexpr int last_iterations = 20;
 constexpr std::array<double, 6> coarse_radii{3, 3, 2, 2, 1.5, 1.5};
 constexpr std::array<double, 5> fine_radii{3, 2, 1.5, 1.5, 1};
 constexpr double fine_normal_radius = 1.5;  // voxels
-constexpr std::size_t coarse_points = 800;
-constexpr std::size_t fine_points = 4000;
+constexpr std::size_t coarse_points = 1500;
+constexpr std::size_t fine_points = 8000;
 constexpr std::size_t max_last_steps = 10;
 constexpr std::size_t enough_agreeing = 15;
 constexpr double enough_agreement = 0.6;

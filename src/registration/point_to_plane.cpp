@@ -41,25 +41,14 @@ struct NormalEquations {
   }
 };
 
-std::size_t stride_of(const Surface& surface, std::size_t max_points) {
-  return std::max<std::size_t>(1, surface.size() / max_points);
-}
-
 NormalEquations linearise(Surface& source, Surface& target, const Transformation& pose, double radius,
                           std::size_t max_points) {
   NormalEquations equations{pose.translation(), 0.5 * radius};
-  const Transformation inverse = pose.inverse();
-  const float reach = static_cast<float>(radius);
-  const auto add = [&](std::size_t i, std::size_t j) {
-    equations.add(pose * source.point(i), pose.linear() * source.normal(i), target.point(j), target.normal(j));
-  };
-  for (std::size_t i = 0; i < source.size(); i += stride_of(source, max_points)) {
-    const std::int64_t j = target.grid().nearest((pose * source.point(i)).cast<float>(), reach);
-    if (j >= 0) add(i, j);
-  }
-  for (std::size_t j = 0; j < target.size(); j += stride_of(target, max_points)) {
-    const std::int64_t i = source.grid().nearest((inverse * target.point(j)).cast<float>(), reach);
-    if (i >= 0) add(i, j);
+  const std::size_t stride = std::max<std::size_t>(1, source.size() / max_points);
+  for (std::size_t i = 0; i < source.size(); i += stride) {
+    const Eigen::Vector3d p = pose * source.point(i);
+    const std::int64_t j = target.grid().nearest(p.cast<float>(), static_cast<float>(radius));
+    if (j >= 0) equations.add(p, pose.linear() * source.normal(i), target.point(j), target.normal(j));
   }
   return equations;
 }

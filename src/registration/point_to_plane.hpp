@@ -32,17 +32,17 @@ class Surface {
 };
 
 struct PointToPlaneOptions {
-  std::size_t max_points = 4000;  ///< of either cloud, evenly strided
+  std::size_t max_points = 4000;  ///< of the source, evenly strided
   std::span<const double> radii;  ///< one Gauss-Newton step each: search radius [voxels]
   std::size_t max_last_steps = 0;  ///< further steps at the last radius, until they are small
   double voxel_size = 0;
   int degrees_of_freedom = 6;
 };
 
-/// Fine registration: every step pairs the points of either cloud with their nearest point of the other within the
-/// radius whose normal agrees, and minimises the distances along the sum of both normals (Rusinkiewicz 2019, symmetric
-/// ICP) under the Geman-McClure loss at half the radius. Neither cloud is preferred. Ends early where a step finds too
-/// few pairs or a free direction. Returns target_from_source.
+/// Fine registration: every step pairs points of the source with their nearest point of the target within the radius
+/// whose normal agrees, and minimises the distances along the sum of both normals (Rusinkiewicz 2019, symmetric ICP)
+/// under the Geman-McClure loss at half the radius. Ends early where a step finds too few pairs or a free direction.
+/// Returns target_from_source.
 Transformation refine_point_to_plane(Surface& source, Surface& target, const Transformation& initial, const PointToPlaneOptions& options);
 
 /// The normal equations of one step at a pose: sum of J^T w J over pairs, and the variance of their residuals. Rotations
@@ -51,7 +51,7 @@ struct Linearisation {
   Eigen::Vector3d centre;
   Eigen::Matrix<double, 6, 6> hessian;
   double residual_variance = 0;  ///< [units of the cloud ^ 2]
-  std::size_t pairs = 0;         ///< from both directions
+  std::size_t pairs = 0;         
 };
 Linearisation linearise_at(Surface& source, Surface& target, const Transformation& pose, double radius,
                            std::size_t max_points);

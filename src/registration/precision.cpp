@@ -60,8 +60,7 @@ Precision precision_of(const Linearisation& linearisation) {
   Precision precision;
   precision.centre = linearisation.centre;
   if (linearisation.pairs == 0 || !(linearisation.residual_variance > 0)) return precision;
-  // Every pair is met from both sides, so half of them are independent.
-  precision.information = 0.5 * linearisation.hessian / linearisation.residual_variance;
+  precision.information = linearisation.hessian / linearisation.residual_variance;
   const Eigen::LDLT<Matrix6> solver(precision.information);
   if (solver.info() == Eigen::Success && solver.isPositive() && solver.rcond() > 1e-15) {
     precision.covariance = solver.solve(Matrix6::Identity());
