@@ -10,6 +10,7 @@
 #endif
 
 #include <algorithm>
+#include <algorithm>
 #include <cstddef>
 
 namespace igsp {
@@ -38,6 +39,18 @@ void parallel_blocks(std::size_t size, int threads, std::size_t grain, const Bod
                       [&](const tbb::blocked_range<std::size_t>& block) { body(block.begin(), block.end()); });
   });
 #endif
+}
+
+/// The same in slices, with tick(share done) between them on the calling thread, so that a caller may report progress
+/// or throw to stop.
+template <typename Body, typename Tick>
+void parallel_slices(std::size_t size, int threads, std::size_t grain, std::size_t slice, const Body& body,
+                     const Tick& tick) {
+  for (std::size_t first = 0; first < size; first += slice) {
+    tick(static_cast<double>(first) / static_cast<double>(size));
+    parallel_blocks(std::min(slice, size - first), threads, grain,
+                    [&](std::size_t begin, std::size_t end) { body(first + begin, first + end); });
+  }
 }
 
 }  // namespace igsp

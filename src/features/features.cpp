@@ -13,11 +13,11 @@ namespace {
 
 constexpr double fine_voxels = 0.5;  // voxels: finer ones brought no accuracy on scans whose truth is known
 
-void describe_keypoints(const PointGrid& grid, const Options& options, Features& features) {
+void describe_keypoints(const PointGrid& grid, const Options& options, const StageClock& clock, Features& features) {
   const double radius = options.descriptor.radius * features.voxel_size;
   features.frames.resize(features.keypoints.size());
   features.descriptors.resize(features.keypoints.size());
-  parallel_blocks(features.keypoints.size(), options.threads, 32, [&](std::size_t begin, std::size_t end) {
+  const auto describe = [&](std::size_t begin, std::size_t end) {
     Support support;
     for (std::size_t i = begin; i < end; ++i) {
       gather_support(grid, features.points[features.keypoints[i]], radius, support);
@@ -25,7 +25,9 @@ void describe_keypoints(const PointGrid& grid, const Options& options, Features&
                                                            : reference_frame(support, radius);
       features.descriptors[i] = binary_shape_context(support, features.frames[i], radius);
     }
-  });
+  };
+  parallel_slices(features.keypoints.size(), options.threads, 32, 256, describe,
+                  [&](double share) { clock.report(share); });
 }
 
 }  // namespace
@@ -49,14 +51,14 @@ Features extract_features(PointView cloud, const Options& options, const Progres
   clock.start("keypoints");
   const double pca_radius = options.keypoints.pca_radius * features.voxel_size;
   const PointGrid grid(features.points, 0.5 * pca_radius);
-  const LocalPca pca = local_pca(grid, pca_radius, options.threads);
+  const LocalPca pca = local_pca(grid, pca_radius, options.threads, [&](double share) { clock.report(share); });
   features.curvature = pca.curvature;
   features.normals.resize(features.points.size());
   for (std::size_t i = 0; i < features.points.size(); ++i) features.normals[i] = pca.normals[i].cast<double>();
   features.keypoints = detect_keypoints(features.points, grid, pca, features.voxel_size, options.keypoints);
 
   clock.start("descriptors");
-  describe_keypoints(grid, options, features);
+  describe_keypoints(grid, options, clock, features);
   clock.finish();
   features.timings_s = clock.timings();
   return features;

@@ -76,7 +76,7 @@ void analyse(const Moments& m, std::uint32_t point, LocalPca& pca) {
 
 }  // namespace
 
-LocalPca local_pca(const PointGrid& grid, double radius, int threads) {
+LocalPca local_pca(const PointGrid& grid, double radius, int threads, const std::function<void(double)>& tick) {
   const std::size_t size = grid.size();
   LocalPca pca;
   pca.curvature.resize(size);
@@ -89,7 +89,7 @@ LocalPca local_pca(const PointGrid& grid, double radius, int threads) {
   const float reach = static_cast<float>(radius) + 0.8661f * grid.cell_size;
   const float squared_radius = static_cast<float>(radius * radius);
   const std::size_t rows = static_cast<std::size_t>(grid.cells[1]) * grid.cells[2];
-  parallel_blocks(rows, threads, 16, [&](std::size_t row_begin, std::size_t row_end) {
+  const auto analyse_rows = [&](std::size_t row_begin, std::size_t row_end) {
     Neighbourhood around;
     for (std::size_t row = row_begin; row < row_end; ++row) {
       const int cy = static_cast<int>(row % grid.cells[1]), cz = static_cast<int>(row / grid.cells[1]);
@@ -108,6 +108,10 @@ LocalPca local_pca(const PointGrid& grid, double radius, int threads) {
         }
       }
     }
+  };
+  const std::size_t slice = std::max<std::size_t>(64, rows / 50);
+  parallel_slices(rows, threads, 16, slice, analyse_rows, [&](double share) {
+    if (tick) tick(share);
   });
   return pca;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "spatial/point_grid.hpp"
@@ -16,7 +17,8 @@ struct LocalPca {
 };
 
 /// Cost is shared among the points of a cell, so `grid` should have cells of about half the radius.
-LocalPca local_pca(const PointGrid& grid, double radius, int threads);
+/// `tick(share done)` is called now and then on the calling thread and may throw.
+LocalPca local_pca(const PointGrid& grid, double radius, int threads, const std::function<void(double)>& tick = {});
 
 /// Normal of one place from the points within `radius` of it: eigenvector of l3, unit, sign arbitrary.
 Eigen::Vector3d local_normal(const PointGrid& grid, const Eigen::Vector3f& place, double radius);
