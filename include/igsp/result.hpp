@@ -55,6 +55,7 @@ struct FreeDirection {
 /// Order: rotation about x, y, z [rad], translation along x, y, z [units of the cloud]; the small motion is applied on
 /// the left, in the target's frame, rotations about `centre`.
 struct Precision {
+  double inlier_rmse = 0;  ///< robust RMS of the distances along the normals where the surfaces lie on each other
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  ///< inverse; 0 where not determined
@@ -89,7 +90,7 @@ struct Result {
   Evidence evidence;
   std::optional<RunnerUp> runner_up;
   Precision precision;
-  double rmse = 0.0;            ///< point-to-plane RMS over the overlap [units of the cloud]
+  double rmse = 0.0;            ///< inlier RMSE: distances along the normals where the surfaces meet [units of the cloud]
   double voxel_size = 0.0;      ///< [units of the cloud]
   CloudSummary source;
   CloudSummary target;

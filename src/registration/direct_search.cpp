@@ -1,5 +1,6 @@
 #include "features/bsc.hpp"
 #include "registration/igsp_loop.hpp"
+#include "registration/precision.hpp"
 #include "registration/search.hpp"
 
 namespace igsp {
@@ -15,7 +16,12 @@ SearchOutcome direct_search(const CommonFrame& frame, const Options& options, St
   const double share = 1.0 / schedule.max_iterations;
   LoopOutcome loop = igsp_loop(input, Transformation::Identity(), schedule, options,
                                [&](int iteration) { clock.report(share * iteration); });
-  return {loop.termination, loop.has_estimate, loop.target_from_source, std::move(loop.iterations), {}, {}};
+  SearchOutcome outcome{loop.termination, loop.has_estimate, loop.target_from_source, std::move(loop.iterations), {}, {}};
+  if (outcome.has_estimate) {
+    FineSurfaces surfaces(frame.source().features, frame.target().features);
+    outcome.precision = precision_at(surfaces, outcome.target_from_source);
+  }
+  return outcome;
 }
 
 }  // namespace igsp

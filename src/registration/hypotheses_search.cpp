@@ -22,7 +22,6 @@ constexpr int last_iterations = 20;
 
 constexpr std::array<double, 6> coarse_radii{3, 3, 2, 2, 1.5, 1.5};
 constexpr std::array<double, 5> fine_radii{3, 2, 1.5, 1.5, 1};
-constexpr double fine_normal_radius = 1.5;  // voxels
 constexpr std::size_t coarse_points = 1500;
 constexpr std::size_t fine_points = 8000;
 constexpr std::size_t max_last_steps = 10;
@@ -86,23 +85,19 @@ Transformation settle(Surface& source, Surface& target, const Transformation& in
 // Down to the noise of the scanner, on the finer voxels.
 void refine(const CommonFrame& frame, const Options& options, StageClock& clock, SearchOutcome& outcome) {
   clock.start("refinement");
-  const Features &source = frame.source().features, &target = frame.target().features;
-  const double v = target.voxel_size;
-  Surface fine_source(source.fine_points, PointGrid(source.fine_points, v), fine_normal_radius * v);
-  Surface fine_target(target.fine_points, PointGrid(target.fine_points, v), fine_normal_radius * v);
+  FineSurfaces surfaces(frame.source().features, frame.target().features);
   if (options.refinement.enabled) {
-    outcome.target_from_source =
-        refine_point_to_plane(fine_source, fine_target, outcome.target_from_source,
-                              {fine_points, fine_radii, max_last_steps, v, options.degrees_of_freedom});
+    outcome.target_from_source = refine_point_to_plane(
+        surfaces.source, surfaces.target, outcome.target_from_source,
+        {fine_points, fine_radii, max_last_steps, frame.target().features.voxel_size, options.degrees_of_freedom});
   }
-  const Linearisation at_pose = linearise_at(fine_source, fine_target, outcome.target_from_source,
-                                             fine_radii.back() * v, fine_points);
-  outcome.precision = precision_of(at_pose);
+  outcome.precision = precision_at(surfaces, outcome.target_from_source);
 }
 
 void finish(CommonFrame& frame, const Options& options, StageClock& clock, SearchOutcome& outcome) {
   clock.start("loop");
-  LoopOutcome loop = hybrid_loop(frame, outcome.target_from_source, last_iterations, options);
+  const int iterations = std::min(last_iterations, options.convergence.max_iterations);
+  LoopOutcome loop = hybrid_loop(frame, outcome.target_from_source, iterations, options);
   outcome.termination = loop.termination;
   outcome.iterations = std::move(loop.iterations);
   if (loop.has_estimate) outcome.target_from_source = loop.target_from_source;

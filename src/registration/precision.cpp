@@ -22,6 +22,10 @@ constexpr double unchanged_contact = 0.975;  // corridors, cylinders, planes: 0.
 constexpr double search_radius = 1.5;       // voxels
 constexpr std::size_t max_points = 1500;
 
+constexpr double fine_normal_radius = 1.5;  // voxels
+constexpr double fine_search_radius = 1.0;  // voxels: that of the last refinement steps
+constexpr std::size_t max_fine_points = 8000;
+
 std::string describe(const Vector6& motion) {
   const Eigen::Vector3d rotation = motion.head<3>(), translation = motion.tail<3>();
   const auto axis = [](Eigen::Vector3d a) {
@@ -56,11 +60,21 @@ double size_of(PointView points) {
   return points.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(points.size()));
 }
 
-Precision precision_of(const Linearisation& linearisation) {
+FineSurfaces::FineSurfaces(const Features& source_features, const Features& target_features)
+    : source(source_features.fine_points, PointGrid(source_features.fine_points, source_features.voxel_size),
+             fine_normal_radius * source_features.voxel_size),
+      target(target_features.fine_points, PointGrid(target_features.fine_points, target_features.voxel_size),
+             fine_normal_radius * target_features.voxel_size),
+      voxel_size(target_features.voxel_size) {}
+
+Precision precision_at(FineSurfaces& surfaces, const Transformation& target_from_source) {
+  const Linearisation at_pose = linearise_at(surfaces.source, surfaces.target, target_from_source,
+                                             fine_search_radius * surfaces.voxel_size, max_fine_points);
   Precision precision;
-  precision.centre = linearisation.centre;
-  if (linearisation.pairs == 0 || !(linearisation.residual_variance > 0)) return precision;
-  precision.information = linearisation.hessian / linearisation.residual_variance;
+  precision.centre = at_pose.centre;
+  precision.inlier_rmse = std::sqrt(at_pose.residual_variance);
+  if (at_pose.pairs == 0 || !(at_pose.residual_variance > 0)) return precision;
+  precision.information = at_pose.hessian / at_pose.residual_variance;
   const Eigen::LDLT<Matrix6> solver(precision.information);
   if (solver.info() == Eigen::Success && solver.isPositive() && solver.rcond() > 1e-15) {
     precision.covariance = solver.solve(Matrix6::Identity());

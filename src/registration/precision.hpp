@@ -10,8 +10,16 @@ namespace igsp {
 /// comparable with a translation.
 double size_of(PointView points);
 
-/// Information and covariance of a pose from the normal equations at it; free directions are left empty.
-Precision precision_of(const Linearisation& linearisation);
+/// Both clouds as fine registration sees them: voxels of v/2.
+struct FineSurfaces {
+  FineSurfaces(const Features& source_features, const Features& target_features);
+  Surface source;
+  Surface target;
+  double voxel_size;  ///< v
+};
+
+/// Inlier RMSE, information and covariance of a pose; free directions are left empty.
+Precision precision_at(FineSurfaces& surfaces, const Transformation& target_from_source);
 
 /// Motions of 8 voxels after which the surfaces touch as much as before: what the surfaces do not fix. Candidates are
 /// the weakest eigenvectors of the normal equations at the pose. Called with one cloud twice and the identity, these are

@@ -18,7 +18,7 @@ SurfaceContact surface_contact(const PreparedCloud& moved, const PreparedCloud& 
   const double v = fixed.features.voxel_size;
   const double reach = std::hypot(max_tangential, max_normal) * v;
   const std::size_t stride = std::max<std::size_t>(1, moved.features.points.size() / max_places);
-  double touching_weight = 0, weight_sum = 0, squares = 0;
+  double touching_weight = 0, weight_sum = 0;
   std::size_t places = 0, met = 0, on_surface = 0;
   for (std::size_t i = 0; i < moved.features.points.size(); i += stride) {
     ++places;
@@ -34,7 +34,6 @@ SurfaceContact surface_contact(const PreparedCloud& moved, const PreparedCloud& 
     weight_sum += weight;
     if (normal < touching * v) {
       touching_weight += weight;
-      squares += normal * normal;
       ++on_surface;
     }
   }
@@ -43,7 +42,6 @@ SurfaceContact surface_contact(const PreparedCloud& moved, const PreparedCloud& 
   const double n = static_cast<double>(met);
   contact.share = ((weight_sum > 0 ? touching_weight / weight_sum : 0.0) * n + 2) / (n + 4);
   if (places > 0) contact.overlap = static_cast<double>(on_surface) / static_cast<double>(places);
-  if (on_surface > 0) contact.rmse = std::sqrt(squares / static_cast<double>(on_surface));
   return contact;
 }
 

@@ -8,7 +8,6 @@ namespace igsp {
 struct SurfaceContact {
   double share = 0.5;    ///< of the places where the two meet, the share where they touch, weighted by curvature; (0, 1)
   double overlap = 0;    ///< share of all voxels of `moved` that lie on `fixed`, [0, 1]
-  double rmse = 0;       ///< root mean square distance to the tangent plane over the overlap [units of the cloud]
 };
 
 /// Places beyond the rim of `fixed` do not count, so the overlap does not matter for `share`; surfaces that merely cross

@@ -71,7 +71,7 @@ void judge(CommonFrame& frame, const SearchOutcome& outcome, Result& result) {
   const PoseAssessment pose = assess_pose(frame, outcome.target_from_source);
   result.overlap_source = pose.source_on_target.overlap;
   result.overlap_target = pose.target_on_source.overlap;
-  result.rmse = pose.source_on_target.rmse;
+  result.rmse = outcome.precision.inlier_rmse;
   result.precision = outcome.precision;
   result.precision.free_directions = free_directions(frame.source(), frame.target(), outcome.target_from_source);
   result.evidence = {pose.mutual_matches, pose.agreeing_matches,
