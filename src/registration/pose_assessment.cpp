@@ -15,12 +15,19 @@ constexpr double on_surface = 1.5;             // voxels
 constexpr std::uint16_t same_place_bits = 95;  // true places differ by 56..92 bits in the common frame, others by 170
 constexpr std::size_t max_samples = 200;
 
-// Number of keypoints of one cloud that, mapped onto the other cloud, are on its surface and look the same there.
-// `axes` are the common frame's axes in the coordinates of `other`.
-double recognised_keypoints(PointView keypoints, std::span<const Descriptor> descriptors, const PreparedCloud& other,
-                            const Transformation& other_from_own, const Eigen::Matrix3d& axes, double radius) {
+// Keypoints of one cloud, mapped onto the other: how many lie on its surface, and how many of those look the same there.
+// `axes` are the common frame's axes in the coordinates of `other`. Counts are scaled up from at most 200 samples.
+struct Recognised {
+  double on_surface = 0;
+  double alike = 0;
+};
+
+Recognised recognised_keypoints(PointView keypoints, std::span<const Descriptor> descriptors,
+                                const PreparedCloud& other, const Transformation& other_from_own,
+                                const Eigen::Matrix3d& axes, double radius) {
   const std::size_t stride = std::max<std::size_t>(1, (keypoints.size() + max_samples - 1) / max_samples);
-  std::size_t sampled = 0, recognised = 0;
+  std::size_t sampled = 0;
+  Recognised counts;
   Support support;
   for (std::size_t i = 0; i < keypoints.size(); i += stride) {
     ++sampled;
@@ -29,26 +36,38 @@ double recognised_keypoints(PointView keypoints, std::span<const Descriptor> des
     if (other.grid.nearest(place.cast<float>(), reach) < 0) continue;
     gather_support(other.grid, place, radius, support);
     const Descriptor there = binary_shape_context(support, axes, radius);
-    recognised += feature_distance({&there, 1}, descriptors[i]) < same_place_bits;
+    ++counts.on_surface;
+    counts.alike += feature_distance({&there, 1}, descriptors[i]) < same_place_bits;
   }
-  if (sampled == 0) return 0;
-  return static_cast<double>(recognised) * static_cast<double>(keypoints.size()) / static_cast<double>(sampled);
+  const double scale = sampled > 0 ? static_cast<double>(keypoints.size()) / static_cast<double>(sampled) : 0.0;
+  return {counts.on_surface * scale, counts.alike * scale};
 }
+
+struct BothWays {
+  Recognised source_on_target;
+  Recognised target_on_source;
+};
+
+BothWays recognised_both_ways(CommonFrame& frame, const Transformation& target_from_source) {
+  const Eigen::Matrix3d& rotation = target_from_source.linear();
+  const double radius = frame.descriptor_radius();
+  return {recognised_keypoints(frame.source().keypoints, frame.source_descriptors(rotation), frame.target(),
+                               target_from_source, Eigen::Matrix3d::Identity(), radius),
+          recognised_keypoints(frame.target().keypoints, frame.target_descriptors(), frame.source(),
+                               target_from_source.inverse(), rotation.transpose(), radius)};
+}
+
+double recognised_share(const Recognised& r) { return (r.alike + 0.5) / (r.on_surface + 1.0); }
 
 }  // namespace
 
 double ranking_score(CommonFrame& frame, const Transformation& target_from_source) {
-  const Eigen::Matrix3d& rotation = target_from_source.linear();
-  const double radius = frame.descriptor_radius();
-  const double forward = recognised_keypoints(frame.source().keypoints, frame.source_descriptors(rotation),
-                                              frame.target(), target_from_source, Eigen::Matrix3d::Identity(), radius);
-  const double backward =
-      recognised_keypoints(frame.target().keypoints, frame.target_descriptors(), frame.source(),
-                           target_from_source.inverse(), rotation.transpose(), radius);
-  const auto matches = mutual_matches(frame, rotation);
+  const BothWays recognised = recognised_both_ways(frame, target_from_source);
+  const auto matches = mutual_matches(frame, target_from_source.linear());
   const std::size_t agreeing =
       count_inliers(matches, target_from_source, agreeing_distance * frame.target().features.voxel_size);
-  return std::sqrt(forward * backward) * static_cast<double>(agreeing);
+  return std::sqrt(recognised.source_on_target.alike * recognised.target_on_source.alike) *
+         static_cast<double>(agreeing);
 }
 
 PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from_source) {
@@ -59,6 +78,9 @@ PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from
   assessment.mutual_matches = matches.size();
   assessment.agreeing_matches =
       count_inliers(matches, target_from_source, agreeing_distance * frame.target().features.voxel_size);
+  const BothWays recognised = recognised_both_ways(frame, target_from_source);
+  assessment.recognised_share = std::sqrt(recognised_share(recognised.source_on_target) *
+                                          recognised_share(recognised.target_on_source));
   const double s = std::sqrt(assessment.source_on_target.share * assessment.target_on_source.share);
   const double r = (static_cast<double>(assessment.agreeing_matches) + 0.1) /
                    std::max(1.0, static_cast<double>(assessment.mutual_matches));

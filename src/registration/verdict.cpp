@@ -74,7 +74,7 @@ void judge(CommonFrame& frame, const SearchOutcome& outcome, Result& result) {
   result.rmse = outcome.precision.inlier_rmse;
   result.precision = outcome.precision;
   result.precision.free_directions = free_directions(frame.source(), frame.target(), outcome.target_from_source);
-  result.evidence = {pose.mutual_matches, pose.agreeing_matches,
+  result.evidence = {pose.mutual_matches, pose.agreeing_matches, pose.recognised_share,
                      std::sqrt(pose.source_on_target.share * pose.target_on_source.share), pose.quality};
 
   const std::vector<Rival> rivals = true_rivals(frame, outcome);
