@@ -68,7 +68,7 @@ struct Evidence {
   std::size_t agreeing_matches = 0;  ///< ... and those of them within 2.5 voxels
   double recognised_share = 0.0;     ///< of the keypoints that lie on the other surface, the share that look the same there
   double contact_share = 0.0;        ///< of the places where the surfaces meet, the share where they touch, (0, 1)
-  double quality = 0.0;              ///< Q = 1.5 log10(s / (1 - s)) + log10 r of contact share s and match share r
+  double quality = 0.0;              ///< Q of docs/method.md: both shares in one number, for the log odds
   double rival_odds = 0.0;           ///< odds of the other poses that were looked into, against this one
 };
 

@@ -14,6 +14,8 @@ constexpr double agreeing_distance = 2.5;      // voxels
 constexpr double on_surface = 1.5;             // voxels
 constexpr std::uint16_t same_place_bits = 95;  // true places differ by 56..92 bits in the common frame, others by 170
 constexpr std::size_t max_samples = 200;
+constexpr double chance_matches = 3.0;      // mutual matches that agree with a wrong pose now and then
+constexpr double expected_agreement = 0.8;  // share of mutual matches that agree, over overlap: right poses have more
 
 // Keypoints of one cloud, mapped onto the other: how many lie on its surface, and how many of those look the same there.
 // `axes` are the common frame's axes in the coordinates of `other`. Counts are scaled up from at most 200 samples.
@@ -57,6 +59,17 @@ BothWays recognised_both_ways(CommonFrame& frame, const Transformation& target_f
                                target_from_source.inverse(), rotation.transpose(), radius)};
 }
 
+double quality_of(const PoseAssessment& pose) {
+  const double s = std::sqrt(pose.source_on_target.share * pose.target_on_source.share);
+  const double mutual = std::max(1.0, static_cast<double>(pose.mutual_matches));
+  const double agreeing = static_cast<double>(pose.agreeing_matches);
+  const double overlap = std::min(pose.source_on_target.overlap, pose.target_on_source.overlap);
+  const double beyond_chance = std::max(agreeing - chance_matches, 0.0) + 0.1;
+  // Where much overlaps much must agree: the same architecture elsewhere lies well on itself, yet few features agree.
+  const double missing = (agreeing + 0.1) / mutual / (expected_agreement * std::max(overlap, 0.02));
+  return 1.5 * std::log10(s / (1 - s)) + std::log10(beyond_chance / mutual) + 2.0 * std::log10(std::min(1.0, missing));
+}
+
 double recognised_share(const Recognised& r) { return (r.alike + 0.5) / (r.on_surface + 1.0); }
 
 }  // namespace
@@ -81,10 +94,7 @@ PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from
   const BothWays recognised = recognised_both_ways(frame, target_from_source);
   assessment.recognised_share = std::sqrt(recognised_share(recognised.source_on_target) *
                                           recognised_share(recognised.target_on_source));
-  const double s = std::sqrt(assessment.source_on_target.share * assessment.target_on_source.share);
-  const double r = (static_cast<double>(assessment.agreeing_matches) + 0.1) /
-                   std::max(1.0, static_cast<double>(assessment.mutual_matches));
-  assessment.quality = 1.5 * std::log10(s / (1 - s)) + std::log10(r);
+  assessment.quality = quality_of(assessment);
   return assessment;
 }
 

@@ -16,7 +16,7 @@ struct PoseAssessment {
   std::size_t mutual_matches = 0;    ///< do the features agree? Mutual nearest neighbours in the common frame ...
   std::size_t agreeing_matches = 0;  ///< ... and those of them within 2.5 voxels
   double recognised_share = 0;       ///< of the keypoints on the other surface, the share that look the same there
-  double quality = 0;                ///< Q = 1.5 log10(s / (1 - s)) + log10 r
+  double quality = 0;                ///< Q, docs/method.md
 };
 PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from_source);
 

@@ -13,7 +13,7 @@ namespace igsp {
 namespace {
 
 // Fitted on simulated pairs of known truth, docs/verdict.md.
-constexpr double even_quality = 0.60;  // Q at which a pose is as likely right as wrong
+constexpr double even_quality = 0.65;  // Q at which a pose is as likely right as wrong
 constexpr double steepness = 3.0;      // decades of the odds per unit of Q
 
 double odds(double quality) { return std::pow(10.0, steepness * quality); }
