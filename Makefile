@@ -4,7 +4,7 @@ jobs := $(shell nproc)
 igsp := build/release/bin/igsp
 demo := build/demo
 
-.PHONY: all build setup demo test bench asan tsan fuzz format install clean
+.PHONY: all build setup demo test bench calibrate asan tsan fuzz format install clean
 
 all: build
 
@@ -35,6 +35,14 @@ bench: setup
 	cmake --preset release -DIGSP_BUILD_BENCHMARKS=ON
 	cmake --build --preset release
 	set -e; for benchmark in build/release/bin/*_benchmark; do $$benchmark; done
+
+# What docs/verdict.md shows: the rows, the numbers, the plots. About ten minutes of one core.
+calibrate:
+	@scripts/setup.sh python3-matplotlib
+	cmake --preset release -DIGSP_BUILD_BENCHMARKS=ON
+	cmake --build --preset release --target igsp_calibrate
+	build/release/bin/igsp_calibrate --pairs 1000 --jobs $(jobs) --out docs/data/calibration.csv
+	/usr/bin/python3 benchmarks/calibration/reliability.py
 
 # New inputs land in build/fuzz/inputs; a crash is written beside the Makefile and stops the run.
 fuzz_seconds ?= 60

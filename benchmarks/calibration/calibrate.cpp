@@ -39,12 +39,11 @@ Error error_of(const Result& result, const Transformation& truth, const Pair& pa
 }
 
 bool is_right(const Pair& pair, const Result& result) {
-  return pair.recipe.kind != Kind::different && result.has_estimate &&
-         error_of(result, pair.truth, pair).is_same_pose();
+  return pair.recipe.is_one_scene() && result.has_estimate && error_of(result, pair.truth, pair).is_same_pose();
 }
 
 double overlap_of(const Pair& pair, double voxel_size) {
-  if (pair.recipe.kind == Kind::different) return 0;
+  if (!pair.recipe.is_one_scene()) return 0;
   return std::min(simulation::overlap_of(pair.source, pair.target, overlap_radius * voxel_size),
                   simulation::overlap_of(pair.target, pair.source, overlap_radius * voxel_size));
 }

@@ -12,7 +12,7 @@ namespace igsp::calibration {
 enum class Kind {
   ordinary,   ///< one scene, one right answer
   different,  ///< two scenes: every answer is wrong
-  ambiguous,  ///< symmetric, repetitive or endless: several answers fit, or a whole family
+  ambiguous,  ///< symmetric, repetitive, endless or noise in a box: several answers fit, or a whole family
 };
 std::string_view to_string(Kind kind);
 
@@ -26,6 +26,8 @@ struct Recipe {
   double station_distance = 0;   ///< [m]; 0: the scene's own
   double field_of_view_deg = 0;  ///< horizontal; 0: all around
   double thinning = 1;           ///< share of the source's points that is kept
+
+  bool is_one_scene() const { return source_scene == target_scene && source_seed == target_seed; }
 };
 
 struct Pair {

@@ -7,7 +7,6 @@ sum 10^(steepness (Q_i - Q)), so they follow another steepness by a power when o
 
 import argparse
 import csv
-import re
 from pathlib import Path
 
 import matplotlib
@@ -34,9 +33,13 @@ def column(rows, name):
     return np.array([row[name] for row in rows], dtype=float)
 
 
-def current_constants(source):
-    text = Path(source).read_text()
-    return tuple(float(re.search(rf"{name} = ([0-9.]+)", text)[1]) for name in ("even_quality", "steepness"))
+def written_constants(rows):
+    """(even_quality, steepness) of the program that wrote the rows: without rivals the log odds are a line in Q."""
+    clear = [row for row in rows if row["has_estimate"] and not row["rival_odds"] and not row["free_directions"]
+             and 1e-4 < row["confidence"] < 1 - 1e-4]
+    confidence = column(clear, "confidence")
+    steepness, offset = np.polyfit(column(clear, "quality"), np.log10(confidence / (1 - confidence)), 1)
+    return round(-offset / steepness, 3), round(steepness, 2)
 
 
 def confidence_of(rows, constants, written):
@@ -109,8 +112,11 @@ def draw_reliability(confidence, right, path):
 def draw_quality(quality, right, even, path):
     edges = np.arange(np.floor(quality.min() * 4) / 4, quality.max() + 0.25, 0.125)
     fig, axes = plt.subplots(figsize=(6.4, 3.2))
-    axes.hist(quality[~right], edges, color="white", edgecolor="black", hatch="////", label="wrong")
-    axes.hist(quality[right], edges, color="0.6", edgecolor="black", alpha=0.8, label="right")
+    wrong_count = np.histogram(quality[~right], edges)[0]
+    axes.bar(edges[:-1], wrong_count, 0.125, align="edge", color="white", edgecolor="black", hatch="////",
+             label="wrong")
+    axes.bar(edges[:-1], np.histogram(quality[right], edges)[0], 0.125, bottom=wrong_count, align="edge", color="0.6",
+             edgecolor="black", label="right")
     axes.axvline(even, color="black", linestyle="--", label=f"as likely right as wrong, Q = {even:.2f}")
     axes.set_xlabel("quality Q"), axes.set_ylabel("answers"), axes.legend(frameon=False)
     save(fig, path)
@@ -126,7 +132,7 @@ def save(fig, path):
 def name_of(row):
     scenes = row["source_scene"] if row["source_scene"] == row["target_scene"] else (
         row["source_scene"] + " / " + row["target_scene"])
-    seeds = row["source_seed"] + (" / " + row["target_seed"] if row["kind"] == "different" else "")
+    seeds = row["source_seed"] + (" / " + row["target_seed"] if row["target_seed"] != row["source_seed"] else "")
     return f"pair {row['pair']} {row['answer']}: {scenes}, seed {seeds}"
 
 
@@ -138,11 +144,22 @@ def report_constants(title, rows, constants, written):
           f"{np.sum(accepted & ~right)} wrong accepted, {np.sum(~accepted & ~right)} wrong refused")
 
 
+def report_thresholds(answers, hard, steepness, written):
+    print("\neven_quality: wrong accepted (of which not indoor), wrong runners-up accepted, right refused")
+    for even in np.arange(0.5, 2.05, 0.1):
+        accepted = confidence_of(hard, (even, steepness), written) >= 0.5
+        right, extra = column(hard, "right") > 0, np.arange(len(hard)) >= len(answers)
+        indoor = np.array([row["source_scene"] == "indoor" for row in hard])
+        false = accepted & ~right
+        print(f"  {even:.1f}: {np.sum(false & ~extra):3d} ({np.sum(false & ~extra & ~indoor)}) "
+              f"{np.sum(false & extra):3d} {np.sum(right & ~accepted):3d}")
+
+
 def report_scenes(rows):
     print("\nscene                     pairs registered  right registered-and-wrong runner-up>0.6 free-direction")
     names = {}
     for row in rows:
-        same = row["kind"] != "different"
+        same = row["source_seed"] == row["target_seed"]
         name = row["source_scene"] if same else f"{row['source_scene']} / other {row['target_scene']}"
         names.setdefault((row["kind"], name), []).append(row)
     for (_, name), group in sorted(names.items(), key=lambda item: ("oda".index(item[0][0][0]), item[0][1])):
@@ -178,7 +195,7 @@ def main():
     arguments = parser.parse_args()
 
     rows = read_rows(arguments.csv)
-    written = current_constants(here / "src/registration/verdict.cpp")
+    written = written_constants(rows)
     answers = [row for row in rows if row["answer"] == "answer"]
     clear = [row for row in answers if row["kind"] != "ambiguous" and row["has_estimate"]]
     hard = clear + [row for row in rows if row["answer"] == "runner_up"]
@@ -191,6 +208,9 @@ def main():
     for title, group in (("answers", clear), ("answers and runners-up", hard)):
         for label, constants in (("current", written), ("fitted to answers", fitted), ("fitted to both", fitted_hard)):
             report_constants(f"{title}, {label}", group, constants, written)
+    report_thresholds(clear, hard, written[1], written)
+    outside = [row for row in clear if row["source_scene"] != "indoor"]
+    print("fitted without indoor scenes: even_quality {:.3f}, steepness {:.2f}".format(*fit(outside)))
     report_scenes(answers)
     report_overlap([row for row in answers if row["kind"] == "ordinary"])
     report_worst(hard)
