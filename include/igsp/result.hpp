@@ -66,7 +66,6 @@ struct Precision {
 struct Evidence {
   std::size_t mutual_matches = 0;    ///< mutual nearest neighbours among the descriptors in a common frame ...
   std::size_t agreeing_matches = 0;  ///< ... and those of them within 2.5 voxels
-  double recognised_share = 0.0;     ///< of the keypoints that lie on the other surface, the share that look the same there
   double contact_share = 0.0;        ///< of the places where the surfaces meet, the share where they touch, (0, 1)
   double quality = 0.0;              ///< Q of docs/method.md: both shares in one number, for the log odds
   double rival_odds = 0.0;           ///< odds of the other poses that were looked into, against this one
@@ -75,7 +74,7 @@ struct Evidence {
 /// The best other pose that was looked into.
 struct RunnerUp {
   Transformation target_from_source = Transformation::Identity();
-  double share = 0.0;  ///< of its ranking score in the winner's, [0, 1]: near 1, the two are hard to tell apart
+  double share = 0.0;  ///< its agreeing matches in terms of the winner's, [0, 1]: near 1, the two are hard to tell apart
 };
 
 /// What `align` answers. Not being able to register is an answer, never an exception.

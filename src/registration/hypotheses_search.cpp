@@ -48,6 +48,20 @@ bool is_clear(const Rematch& match) {
          static_cast<double>(match.agreeing) >= enough_agreement * static_cast<double>(match.matches.size());
 }
 
+// The first `limit` that do not repeat an earlier one: matching again draws proposals together, and six times the same
+// pose would leave no room for the others.
+std::vector<Rematch> distinct(std::vector<Rematch> sorted, double voxel_size, int limit) {
+  std::vector<Rematch> kept;
+  for (Rematch& match : sorted) {
+    const bool repeats = std::any_of(kept.begin(), kept.end(), [&](const Rematch& other) {
+      return same_pose(match.target_from_source, other.target_from_source, Eigen::Vector3d::Zero(), voxel_size);
+    });
+    if (!repeats) kept.push_back(std::move(match));
+    if (kept.size() == static_cast<std::size_t>(limit)) break;
+  }
+  return kept;
+}
+
 // Matches every proposal again in its common frame and keeps those with most agreeing matches. After a clear winner only
 // proposals that as many candidates support are looked into: they would be the other poses of a symmetric scene.
 std::vector<Rematch> screen(CommonFrame& frame, std::span<const Hypothesis> hypotheses, const Options& options,
@@ -63,10 +77,7 @@ std::vector<Rematch> screen(CommonFrame& frame, std::span<const Hypothesis> hypo
   }
   std::stable_sort(screened.begin(), screened.end(),
                    [](const Rematch& a, const Rematch& b) { return a.agreeing > b.agreeing; });
-  if (screened.size() > static_cast<std::size_t>(options.hypotheses.max_refined)) {
-    screened.resize(options.hypotheses.max_refined);
-  }
-  return screened;
+  return distinct(std::move(screened), frame.target().features.voxel_size, options.hypotheses.max_refined);
 }
 
 LoopOutcome hybrid_loop(CommonFrame& frame, const Transformation& initial, int iterations, const Options& options) {
@@ -104,26 +115,23 @@ void finish(CommonFrame& frame, const Options& options, StageClock& clock, Searc
   refine(frame, options, clock, outcome);
 }
 
-struct Ranked {
-  Transformation pose;
-  double score;
-};
-
-// A few iterations of the loop and a short refinement for each, then its score. Best first.
-std::vector<Ranked> rank(CommonFrame& frame, std::span<const Rematch> candidates, const Options& options,
-                         StageClock& clock) {
+// A few iterations of the loop and a short refinement for each, then the question that the verdict asks as well: how
+// well do the clouds agree at this pose? Best first.
+std::vector<Rival> rank(CommonFrame& frame, std::span<const Rematch> candidates, const Options& options,
+                        StageClock& clock) {
   const PreparedCloud &source_cloud = frame.source(), &target_cloud = frame.target();
   Surface source(source_cloud.features.points, source_cloud.grid, source_cloud.features.normals);
   Surface target(target_cloud.features.points, target_cloud.grid, target_cloud.features.normals);
-  std::vector<Ranked> ranked;
+  std::vector<Rival> ranked;
   for (const Rematch& candidate : candidates) {
     clock.report(static_cast<double>(ranked.size()) / static_cast<double>(candidates.size()));
     const LoopOutcome loop = hybrid_loop(frame, candidate.target_from_source, first_iterations, options);
     const Transformation pose =
         settle(source, target, loop.target_from_source, target_cloud.features.voxel_size, options);
-    ranked.push_back({pose, ranking_score(frame, pose)});
+    ranked.push_back({pose, assess_pose(frame, pose)});
   }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.score > b.score; });
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Rival& a, const Rival& b) { return a.assessment.quality > b.assessment.quality; });
   return ranked;
 }
 
@@ -136,14 +144,12 @@ SearchOutcome hypotheses_search(CommonFrame& frame, const Options& options, Stag
   clock.start("screening");
   const std::vector<Rematch> screened = screen(frame, hypotheses, options, clock);
   clock.start("ranking");
-  const std::vector<Ranked> ranked = rank(frame, screened, options, clock);
+  const std::vector<Rival> ranked = rank(frame, screened, options, clock);
   if (ranked.empty()) return outcome;
 
   outcome.has_estimate = true;
-  outcome.target_from_source = ranked.front().pose;
-  for (std::size_t i = 1; i < ranked.size(); ++i) {
-    outcome.rivals.push_back({ranked[i].pose, ranked[i].score / std::max(ranked.front().score, 1e-300)});
-  }
+  outcome.target_from_source = ranked.front().target_from_source;
+  outcome.rivals.assign(ranked.begin() + 1, ranked.end());
   finish(frame, options, clock, outcome);
   return outcome;
 }

@@ -5,17 +5,12 @@
 
 namespace igsp {
 
-/// Score for ranking hypotheses: how many keypoints find their own descriptor on the other cloud, times how many mutual
-/// matches agree.
-double ranking_score(CommonFrame& frame, const Transformation& target_from_source);
-
 /// What the clouds themselves say of a pose: two independent questions.
 struct PoseAssessment {
   SurfaceContact source_on_target;  ///< do the surfaces lie on each other wherever they meet?
   SurfaceContact target_on_source;
   std::size_t mutual_matches = 0;    ///< do the features agree? Mutual nearest neighbours in the common frame ...
   std::size_t agreeing_matches = 0;  ///< ... and those of them within 2.5 voxels
-  double recognised_share = 0;       ///< of the keypoints on the other surface, the share that look the same there
   double quality = 0;                ///< Q, docs/method.md
 };
 PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from_source);

@@ -5,13 +5,14 @@
 #include "core/stage_clock.hpp"
 #include "igsp/result.hpp"
 #include "registration/common_frame.hpp"
+#include "registration/pose_assessment.hpp"
 
 namespace igsp {
 
 /// A refined hypothesis that lost.
 struct Rival {
   Transformation target_from_source;
-  double share;  ///< of its ranking score in the winner's
+  PoseAssessment assessment;
 };
 
 /// What a search hands to the verdict, in the clouds' local coordinates.

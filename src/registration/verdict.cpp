@@ -16,6 +16,9 @@ namespace {
 constexpr double even_quality = 0.65;  // Q at which a pose is as likely right as wrong
 constexpr double steepness = 3.0;      // decades of the odds per unit of Q
 
+// Beyond this, more quality says nothing more about which of two poses is right: contact of 99.9 against 99.6 % is noise.
+constexpr double certain_quality = 1.5;
+
 double odds(double quality) { return std::pow(10.0, steepness * quality); }
 
 std::string free_motions(const std::vector<FreeDirection>& directions) {
@@ -74,14 +77,18 @@ void judge(CommonFrame& frame, const SearchOutcome& outcome, Result& result) {
   result.rmse = outcome.precision.inlier_rmse;
   result.precision = outcome.precision;
   result.precision.free_directions = free_directions(frame.source(), frame.target(), outcome.target_from_source);
-  result.evidence = {pose.mutual_matches, pose.agreeing_matches, pose.recognised_share,
+  result.evidence = {pose.mutual_matches, pose.agreeing_matches,
                      std::sqrt(pose.source_on_target.share * pose.target_on_source.share), pose.quality};
 
   const std::vector<Rival> rivals = true_rivals(frame, outcome);
-  if (!rivals.empty()) result.runner_up = RunnerUp{rivals.front().target_from_source, std::min(1.0, rivals.front().share)};
+  if (!rivals.empty()) {
+    const double explained = static_cast<double>(rivals.front().assessment.agreeing_matches);
+    const double all = std::max(1.0, static_cast<double>(pose.agreeing_matches));
+    result.runner_up = RunnerUp{rivals.front().target_from_source, std::min(1.0, explained / all)};
+  }
   double rival_odds = 0;
   for (const Rival& rival : rivals) {
-    rival_odds += odds(assess_pose(frame, rival.target_from_source).quality - pose.quality);
+    rival_odds += odds(std::min(rival.assessment.quality, certain_quality) - std::min(pose.quality, certain_quality));
   }
   result.evidence.rival_odds = rival_odds;
 
