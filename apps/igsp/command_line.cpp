@@ -115,6 +115,7 @@ int run(int argc, char** argv) {
   Command command;
   add_align_command(app, command);
   add_evaluate_command(app, command);
+  add_benchmark_command(app, command);
   add_simulate_command(app, command);
   add_info_command(app, command);
   add_options_command(app, command);

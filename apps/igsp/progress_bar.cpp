@@ -62,6 +62,18 @@ void ProgressBar::finish() {
   stage_.clear();
 }
 
+void ProgressBar::print_above(const std::string& line) {
+  if (!enabled_) return;
+  std::fputs(("\r\033[K" + line + "\n").c_str(), stderr);
+  if (!stage_.empty()) draw(std::max(percent_, 0));
+}
+
+void ProgressBar::clear() {
+  if (stage_.empty()) return;
+  std::fputs("\r\033[K", stderr);
+  stage_.clear();
+}
+
 ProgressCallback ProgressBar::callback() {
   return [this](const Progress& progress) {
     update(progress);

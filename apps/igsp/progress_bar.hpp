@@ -20,6 +20,12 @@ class ProgressBar {
   /// The last stage is done: other output can follow.
   void finish();
 
+  /// A line above the bar, where the bar is drawn at all.
+  void print_above(const std::string& line);
+
+  /// Takes the bar away: what it showed is said elsewhere.
+  void clear();
+
   /// A callback that draws and asks to stop after an interrupt. Valid as long as the bar.
   ProgressCallback callback();
 
