@@ -113,7 +113,7 @@ class Answers(BenchmarkTest):
 
 class Mistakes(BenchmarkTest):
     def test_broken_lists_are_refused_before_anything_runs(self):
-        self.refuses(GOOD + GOOD.replace("2,0.3", "two,0.3"), code=3, saying=["cases.csv: line 3, column 6", '"two"'])
+        self.refuses(GOOD + GOOD.replace("2,0.3", "two,0.3"), code=3, saying=["cases.csv: line 3, column 6", "'two'"])
         self.refuses(GOOD + "x,y\n", code=3, saying=["line 3, column 3"])
         self.refuses("", code=3, saying="line 2")
         self.assertEqual(os.listdir(self.folder), [])

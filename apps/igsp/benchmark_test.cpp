@@ -85,7 +85,7 @@ TEST_F(BenchmarkFiles, BrokenListsAreNamedByLineAndColumn) {
   complains(header + good + "b,g,x.ply,y.ply,t.txt,5,nan,1\n", {"line 3", "column 7"});
   complains(header + good + "b,g,,y.ply,t.txt,5,1,1\n", {"line 3", "column 3 (source)", "empty"});
   complains(header + good + "b,g,x.ply\n", {"line 3", "column 4", "3 columns", "8"});
-  complains(header + good + good, {"line 3", "column 1 (name)", "\"a\" is there already"});
+  complains(header + good + good, {"line 3", "column 1 (name)", "'a' is there already"});
   complains(header + good + "b,\"g,x.ply\n", {"line 3", "column 2", "not closed"});
   EXPECT_THROW(read_cases(folder_ / "nowhere.csv"), FileError);
   EXPECT_THROW(read_cases(folder_), FileError);

@@ -64,7 +64,7 @@ void ProgressBar::finish() {
 
 void ProgressBar::print_above(const std::string& line) {
   if (!enabled_) return;
-  std::fputs(("\r\033[K" + line + "\n").c_str(), stderr);
+  std::fputs(fmt::format("\r\033[K{}\n", line).c_str(), stderr);
   if (!stage_.empty()) draw(std::max(percent_, 0));
 }
 
