@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "registration/pose_assessment.hpp"
@@ -56,6 +57,17 @@ std::string_view to_string(Termination termination) {
 
 namespace {
 
+// No scale can be chosen, nor is anything there to register: an answer, not the caller's mistake.
+Result without_extent(PointView source, PointView target, const Options& options) {
+  Result result;
+  result.options = options;
+  result.source.points = source.size();
+  result.target.points = target.size();
+  result.termination = Termination::too_few_keypoints;
+  result.reason = "all points coincide in both clouds: there is nothing to register";
+  return result;
+}
+
 Result align_features(const Features& source, const Features& target, const Transformation* initial,
                       const Options& options, const ProgressCallback& progress) {
   validate(options);
@@ -95,8 +107,8 @@ Result align_features(const Features& source, const Features& target, const Tran
 Result align_points(PointView source, PointView target, const Transformation* initial, const Options& options,
                     const ProgressCallback& progress) {
   validate(options);
-  bounds_of(source, "source");
-  bounds_of(target, "target");
+  const double extent = std::max(bounds_of(source, "source").diagonal(), bounds_of(target, "target").diagonal());
+  if (extent == 0 && options.scale.voxel_size == 0) return without_extent(source, target, options);
   StageClock clock(progress);
   clock.start("scale");
   Options scaled = options;
