@@ -14,7 +14,7 @@ namespace {
 
 // Fitted on simulated pairs of known truth, docs/verdict.md.
 constexpr double even_quality = 0.65;  // Q at which a pose is as likely right as wrong
-constexpr double steepness = 3.0;      // decades of the odds per unit of Q
+constexpr double steepness = 2.0;      // decades of the odds per unit of Q
 
 // Beyond this, more quality says nothing more about which of two poses is right: contact of 99.9 against 99.6 % is noise.
 constexpr double certain_quality = 1.5;
