@@ -80,11 +80,12 @@ std::vector<Rematch> screen(CommonFrame& frame, std::span<const Hypothesis> hypo
   return distinct(std::move(screened), frame.target().features.voxel_size, options.hypotheses.max_refined);
 }
 
-LoopOutcome hybrid_loop(CommonFrame& frame, const Transformation& initial, int iterations, const Options& options) {
+LoopOutcome hybrid_loop(CommonFrame& frame, const Transformation& initial, int iterations, const Options& options,
+                        const std::function<void(int)>& tick = {}) {
   const LoopInput input{frame.source().keypoints,   frame.target().keypoints,
                         frame.source_descriptors(initial.linear()), 1,
                         frame.target_descriptors(), frame.target().features.voxel_size};
-  return igsp_loop(input, initial, {first_hybrid_k, iterations, hybrid_fit_scale, common_frame_bounds}, options);
+  return igsp_loop(input, initial, {first_hybrid_k, iterations, hybrid_fit_scale, common_frame_bounds}, options, tick);
 }
 
 // A short refinement on the voxel centroids, before hypotheses are compared.
@@ -108,7 +109,8 @@ void refine(const CommonFrame& frame, const Options& options, StageClock& clock,
 void finish(CommonFrame& frame, const Options& options, StageClock& clock, SearchOutcome& outcome) {
   clock.start("loop");
   const int iterations = std::min(last_iterations, options.convergence.max_iterations);
-  LoopOutcome loop = hybrid_loop(frame, outcome.target_from_source, iterations, options);
+  LoopOutcome loop = hybrid_loop(frame, outcome.target_from_source, iterations, options,
+                                 [&](int iteration) { clock.report(static_cast<double>(iteration) / iterations); });
   outcome.termination = loop.termination;
   outcome.iterations = std::move(loop.iterations);
   if (loop.has_estimate) outcome.target_from_source = loop.target_from_source;
