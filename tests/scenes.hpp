@@ -15,10 +15,11 @@ struct Pair {
   Transformation truth = Transformation::Identity();  ///< target_from_source
 };
 
-inline Pair simulated_pair(std::string_view scene, int points, double station_distance = 0.0) {
+inline Pair simulated_pair(std::string_view scene, int points, double station_distance = 0.0, std::uint64_t seed = 7) {
   SimulationOptions options;
   options.points = points;
   options.station_distance = station_distance;
+  options.seed = seed;
   std::vector<SimulatedScan> scans = simulate(scene, options);
   const Transformation truth = scans[1].world_from_scanner.inverse() * scans[0].world_from_scanner;
   return {std::move(scans[0].points), std::move(scans[1].points), truth};
@@ -60,6 +61,12 @@ inline double radius_of_gyration(PointView points) {
   double sum = 0.0;
   for (const Eigen::Vector3d& point : points) sum += (point - mean).squaredNorm();
   return std::sqrt(sum / static_cast<double>(points.size()));
+}
+
+/// The same pair with its source moved away, so that no start pose helps.
+inline Pair scrambled(Pair pair, std::uint64_t seed) {
+  const Transformation away = random_motion(seed, 3.0 * radius_of_gyration(pair.source));
+  return {moved(away, pair.source), std::move(pair.target), pair.truth * away.inverse()};
 }
 
 /// How far apart two answers put the cloud: displacement of its centroid plus rotation times its lever arm, in the
