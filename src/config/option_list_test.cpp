@@ -197,12 +197,12 @@ TEST(Assign, TakesAnIntegerForARealOptionOnly) {
 TEST(OptionValueText, ReadsBackTheSameNumber) {
   EXPECT_EQ(to_string(OptionValue(6.0)), "6.0");
   EXPECT_EQ(to_string(OptionValue(6)), "6");
-  rc::check([](double value) {
+  EXPECT_TRUE(rc::check([](double value) {
     Options options;
     const double positive = std::abs(value) + 1e-6;
     assign_text(options, find("energy.p2"), to_string(OptionValue(positive)));
     RC_ASSERT(options.energy.p2 == positive);
-  });
+  }));
 }
 
 TEST(Preset, PaperIsTable1AndItsAlgorithmAlone) {

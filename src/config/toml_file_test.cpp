@@ -32,7 +32,7 @@ TEST(Toml, PresetsReadBackAsTheyWereWritten) {
 }
 
 TEST(Toml, AnyRealValuesReadBackExactly) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     Options options;
     for (const Option& option : option_list()) {
       if (option.kind != OptionKind::real) continue;
@@ -43,7 +43,7 @@ TEST(Toml, AnyRealValuesReadBackExactly) {
     validate(options);
     const Options back = options_from_toml(options_to_toml(options), "text");
     for (const Option& option : option_list()) RC_ASSERT(option.get(options) == option.get(back));
-  });
+  }));
 }
 
 TEST(Toml, WrittenTextNamesEveryOptionWithItsHelpAndRange) {
