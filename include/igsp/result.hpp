@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +13,12 @@
 #include "igsp/point_cloud.hpp"
 
 namespace igsp {
+
+/// Two matched keypoints: indices into Result::source_keypoints and Result::target_keypoints.
+struct KeypointMatch {
+  std::uint32_t source;
+  std::uint32_t target;
+};
 
 /// One pass of the loop (the paper's Algorithm 1).
 struct IterationRecord {
@@ -26,6 +33,7 @@ struct IterationRecord {
   double translation_step = 0.0;  ///< displacement of the source keypoints' centroid [units of the cloud]
   double seconds = 0.0;
   Transformation target_from_source = Transformation::Identity();  ///< after this iteration
+  std::vector<KeypointMatch> correspondences;                      ///< M, `matches` of them
 };
 
 /// Why the loop ended.
@@ -94,6 +102,8 @@ struct Result {
   double voxel_size = 0.0;      ///< [units of the cloud]
   CloudSummary source;
   CloudSummary target;
+  Points source_keypoints;      ///< as given, not moved
+  Points target_keypoints;
   std::vector<IterationRecord> iterations;
   std::vector<std::pair<std::string, double>> timings_s;  ///< per stage, wall seconds, in order
   Options options;                                        ///< as used

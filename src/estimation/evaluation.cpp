@@ -1,6 +1,11 @@
 #include "igsp/evaluation.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
+
+#include "igsp/errors.hpp"
 
 namespace igsp {
 
@@ -20,6 +25,28 @@ PoseError pose_error(const Transformation& estimate, const Transformation& truth
   error.translation = (estimate.translation() - delta_rotation * truth.translation()).norm();
   error.centroid_displacement = (estimate * source_centroid - truth * source_centroid).norm();
   return error;
+}
+
+MatchQuality match_quality(std::span<const KeypointMatch> correspondences, PointView source_keypoints,
+                           PointView target_keypoints, const Transformation& truth, double radius) {
+  if (!(radius > 0)) throw InvalidArgument(fmt::format("radius is {}; it must be greater than 0", radius));
+  Points moved;
+  moved.reserve(source_keypoints.size());
+  for (const Eigen::Vector3d& keypoint : source_keypoints) moved.push_back(truth * keypoint);
+  const auto is_true_pair = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return (a - b).squaredNorm() < radius * radius;
+  };
+  MatchQuality quality;
+  quality.matched = correspondences.size();
+  for (const KeypointMatch& match : correspondences) {
+    if (is_true_pair(moved[match.source], target_keypoints[match.target])) ++quality.correct;
+  }
+  // All pairs: a few thousand keypoints at most, and this is no part of a registration.
+  quality.possible = static_cast<std::size_t>(std::count_if(moved.begin(), moved.end(), [&](const Eigen::Vector3d& a) {
+    return std::any_of(target_keypoints.begin(), target_keypoints.end(),
+                       [&](const Eigen::Vector3d& b) { return is_true_pair(a, b); });
+  }));
+  return quality;
 }
 
 }  // namespace igsp

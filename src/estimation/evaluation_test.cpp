@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/core_testing.hpp"
+#include "igsp/errors.hpp"
 
 namespace igsp {
 namespace {
@@ -86,6 +87,26 @@ RC_GTEST_PROP(PoseError, IsTheTransformationBetweenBothPoses, (std::uint64_t see
   const PoseError shifted = pose_error(h * estimate * g.inverse(), h * truth * g.inverse(), g * centroid);
   RC_ASSERT(std::abs(shifted.centroid_displacement - error.centroid_displacement) < 1e-11);
   RC_ASSERT(std::abs(shifted.rotation_rad - error.rotation_rad) < 1e-12);
+}
+
+TEST(MatchQuality, ByHand) {
+  const Transformation truth(Eigen::Translation3d(10, 0, 0));
+  const Points source{{0, 0, 0}, {5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
+  const Points target{{10, 0, 0.9}, {15, 0, 0}, {10, 5, 1.1}, {50, 50, 50}};  // the third is 1.1 away from its place
+  const std::vector<KeypointMatch> matches{{0, 0}, {1, 2}, {3, 3}};
+  const MatchQuality quality = match_quality(matches, source, target, truth, 1.0);
+  EXPECT_EQ(quality.correct, 1u);
+  EXPECT_EQ(quality.matched, 3u);
+  EXPECT_EQ(quality.possible, 2u);
+  EXPECT_DOUBLE_EQ(quality.precision(), 1.0 / 3.0);
+  EXPECT_DOUBLE_EQ(quality.recall(), 0.5);
+}
+
+TEST(MatchQuality, NothingMatchedOrPossibleIsZero) {
+  const MatchQuality quality = match_quality({}, {}, {}, Transformation::Identity(), 1.0);
+  EXPECT_EQ(quality.precision(), 0.0);
+  EXPECT_EQ(quality.recall(), 0.0);
+  EXPECT_THROW(match_quality({}, {}, {}, Transformation::Identity(), 0.0), InvalidArgument);
 }
 
 }  // namespace

@@ -26,6 +26,13 @@ Transformation to_local(const Transformation& world, const Features& source, con
   return local;
 }
 
+Points keypoints_in_world(const Features& features) {
+  Points keypoints;
+  keypoints.reserve(features.keypoints.size());
+  for (const std::uint32_t i : features.keypoints) keypoints.push_back(features.points[i] + features.origin);
+  return keypoints;
+}
+
 CloudSummary summary_of(const Features& features) {
   return {features.cloud_points, features.points.size(), features.keypoints.size()};
 }
@@ -78,6 +85,8 @@ Result align_features(const Features& source, const Features& target, const Tran
   result.voxel_size = target.voxel_size;
   result.source = summary_of(source);
   result.target = summary_of(target);
+  result.source_keypoints = keypoints_in_world(source);
+  result.target_keypoints = keypoints_in_world(target);
 
   clock.start("common frame");
   const PreparedCloud prepared_source(source), prepared_target(target);

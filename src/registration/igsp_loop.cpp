@@ -73,6 +73,7 @@ LoopOutcome igsp_loop(const LoopInput& input, const Transformation& initial, con
 
     IterationRecord record{k, weights.fd, weights.ed, threshold, edges.size(), matched.size()};
     record.energy = matching_energy(assignment, keypoints, threshold);  // Eq. 1
+    for (const Correspondence& c : matched) record.correspondences.push_back({c.source, c.target});
     if (step) {
       const Eigen::Vector3d centroid = centroid_of(source);
       record.rotation_step_rad = rotation_error_rad(step->linear(), Eigen::Matrix3d::Identity());
