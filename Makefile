@@ -4,7 +4,7 @@ jobs := $(shell nproc)
 igsp := build/release/bin/igsp
 demo := build/demo
 
-.PHONY: all build setup demo test bench calibrate asan tsan fuzz format install clean
+.PHONY: all build setup demo test deb bench calibrate asan tsan fuzz format install clean
 
 all: build
 
@@ -23,7 +23,9 @@ demo: setup
 	$(igsp) align $(demo)/station_1.ply $(demo)/station_0.ply --transform $(demo)/estimate.txt
 	$(igsp) evaluate --transform $(demo)/estimate.txt --truth $(demo)/station_1_to_0.txt --source $(demo)/station_1.ply
 
+# dpkg-dev and fakeroot make and install the packages, the shells and mandoc judge completion and manual page.
 test: build
+	@scripts/setup.sh dpkg-dev fakeroot fish man-db mandoc zsh
 	ctest --preset release -j $(jobs)
 
 asan tsan: setup
@@ -59,6 +61,13 @@ format:
 
 install: build
 	cmake --install build/release --prefix $(PREFIX)
+
+# build/deb/igsp_*.deb, the command, and build/deb/libigsp-dev_*.deb, the library to build with.
+deb: setup
+	@scripts/setup.sh dpkg-dev
+	cmake --preset release
+	cmake --build --preset release --target igsp_app
+	cpack --config build/release/CPackConfig.cmake -B build/deb
 
 clean:
 	rm -rf build

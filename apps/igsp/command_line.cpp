@@ -119,6 +119,8 @@ int run(int argc, char** argv) {
   add_simulate_command(app, command);
   add_info_command(app, command);
   add_options_command(app, command);
+  add_completion_command(app, command);
+  add_manual_command(app, command);
   if (argc < 2) {
     std::cerr << app.help();
     return exit_usage;

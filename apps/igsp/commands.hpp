@@ -15,5 +15,7 @@ void add_benchmark_command(CLI::App& app, Command& command);
 void add_simulate_command(CLI::App& app, Command& command);
 void add_info_command(CLI::App& app, Command& command);
 void add_options_command(CLI::App& app, Command& command);
+void add_completion_command(CLI::App& app, Command& command);
+void add_manual_command(CLI::App& app, Command& command);
 
 }  // namespace igsp::cli
