@@ -4,7 +4,7 @@ jobs := $(shell nproc)
 igsp := build/release/bin/igsp
 demo := build/demo
 
-.PHONY: all build setup demo test deb bench calibrate asan tsan fuzz format install clean
+.PHONY: all build setup demo test deb docs bench calibrate asan tsan fuzz format install clean
 
 all: build
 
@@ -23,9 +23,10 @@ demo: setup
 	$(igsp) align $(demo)/station_1.ply $(demo)/station_0.ply --transform $(demo)/estimate.txt
 	$(igsp) evaluate --transform $(demo)/estimate.txt --truth $(demo)/station_1_to_0.txt --source $(demo)/station_1.ply
 
-# dpkg-dev and fakeroot make and install the packages, the shells and mandoc judge completion and manual page.
+# dpkg-dev and fakeroot make and install the packages, the shells and mandoc judge completion and manual page, MkDocs
+# builds the site.
 test: build
-	@scripts/setup.sh dpkg-dev fakeroot fish man-db mandoc zsh
+	@scripts/setup.sh dpkg-dev fakeroot fish man-db mandoc mkdocs-material zsh
 	ctest --preset release -j $(jobs)
 
 asan tsan: setup
@@ -68,6 +69,13 @@ deb: setup
 	cmake --preset release
 	cmake --build --preset release --target igsp_app
 	cpack --config build/release/CPackConfig.cmake -B build/deb
+
+# The documentation site, build/site/index.html, with its links checked.
+docs: setup
+	@scripts/setup.sh mkdocs-material
+	cmake --preset release
+	cmake --build --preset release --target igsp_app
+	/usr/bin/python3 tests/site_test.py $(igsp) build/site
 
 clean:
 	rm -rf build

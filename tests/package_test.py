@@ -126,7 +126,7 @@ class Installation(unittest.TestCase):
             f"-DCMAKE_CXX_FLAGS={CACHE['CMAKE_CXX_FLAGS']}")
         self.assertIn(str(self.root), (build / "CMakeCache.txt").read_text())
         run(cmake, "--build", build)
-        run(build / "consumer")
+        run(build / "consumer", cwd=FOLDER)
 
     def test_5_removal_leaves_nothing(self):
         self.dpkg("--purge", "libigsp-dev", "igsp")
