@@ -115,7 +115,8 @@ class Installation(unittest.TestCase):
     def test_3_manual_page_completion_and_licence_are_where_debian_looks(self):
         share = self.root / "usr/share"
         for path in ("man/man1/igsp.1.gz", "bash-completion/completions/igsp", "zsh/vendor-completions/_igsp",
-                     "fish/vendor_completions.d/igsp.fish", "doc/igsp/copyright", "doc/igsp/CHANGELOG.md"):
+                     "fish/vendor_completions.d/igsp.fish", "doc/igsp/copyright", "doc/igsp/CHANGELOG.md",
+                     "doc/libigsp-dev/copyright"):
             self.assertGreater((share / path).stat().st_size, 500, path)
 
     def test_4_a_consumer_builds_against_the_library(self):
