@@ -137,15 +137,16 @@ def _read_records(
     path: PathLike, file: BinaryIO, form: struct.Struct, start: int, count: int, limit: int
 ) -> list[Record]:
     records = []
+    limited_by = "its points begin" if form is VLR else "the file ends"
     for index in range(count):
-        file.seek(start)
-        head = file.read(form.size)
-        if len(head) < form.size or start + form.size > limit:
-            raise FormatError(path, f"byte {start}: variable length record {index} of {count} lies beyond byte {limit}")
-        user, number, size = form.unpack(head)
         content = start + form.size
+        size = 0
+        if content <= limit:
+            file.seek(start)
+            user, number, size = form.unpack(file.read(form.size))
         if content + size > limit:
-            raise FormatError(path, f"byte {start}: a variable length record of {size} bytes ends beyond byte {limit}")
+            fault = f"{limited_by} before variable length record {index}, which is at byte {start}, ends"
+            raise FormatError(path, f"byte {limit}: {fault}")
         records.append(Record(user.split(b"\0")[0].decode("latin-1"), number, start, content, content + size))
         start = content + size
     return records

@@ -54,6 +54,7 @@ def read_records(
                 total += len(records)
                 yield records
     except (laspy.LaspyException, RuntimeError, ValueError, OverflowError) as error:
-        raise FormatError(path, f"after point {total}: {error}") from error
+        fault = f"after point {total} of {layout.point_count}: {error}: cut short or damaged?"
+        raise FormatError(path, fault) from error
     if total != layout.point_count:
         raise FormatError(path, f"the file ends after {total} of {layout.point_count} points")

@@ -85,5 +85,5 @@ class LineReader:
                 try:
                     float(value)
                 except ValueError:
-                    self.fail(f"not a number: '{value[:40]}'", number)
+                    self.fail(f"not a number: {value[:40]!a}", number)
         self.fail("a number that cannot be read in this line or shortly before")

@@ -30,8 +30,9 @@ def as_rigid(matrix: ArrayLike, name: str) -> Points:
 
 
 def apply(motion: Points, points: Points) -> Points:
-    """(N, 3) moved."""
-    moved: Points = points @ motion[:3, :3].T + motion[:3, 3]
+    """(N, 3) moved; a point that is not finite stays so."""
+    with np.errstate(invalid="ignore"):
+        moved: Points = points @ motion[:3, :3].T + motion[:3, 3]
     return moved
 
 

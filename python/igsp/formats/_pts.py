@@ -8,6 +8,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+import numpy as np
+
 from . import _motion
 from ._atomic import atomic_output
 from ._cloud import Metadata, PathLike, Points, Scan, Selection
@@ -115,10 +117,10 @@ def _decimals_of(value: str) -> int:
 def _moved_lines(block: Block, points: Points, decimals: int) -> Iterator[str]:
     moved = iter(points.tolist())
     for line in block.lines:
-        if line.isspace():
+        found = COORDINATES.match(line)
+        point = next(moved) if found else []
+        if not found or not np.isfinite(point).all():  # a blank line, or no point
             yield line
             continue
-        found = COORDINATES.match(line)
-        assert found  # its coordinates have been read
-        x, y, z = (f"{value:.{decimals}f}" for value in next(moved))
+        x, y, z = (f"{value:.{decimals}f}" for value in point)
         yield f"{found[1]}{x}{found[3]}{y}{found[5]}{z}{line[found.end() :]}"

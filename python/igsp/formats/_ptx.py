@@ -126,7 +126,7 @@ def _moved_header(header: Header, target_from_source: Points, selection: Selecti
 
 def _count(reader: LineReader, number: int, line: str) -> int:
     if not (line.strip().isascii() and line.strip().isdigit()):
-        reader.fail(f"a PTX scan begins with its counts of columns and of rows, not with '{line.strip()[:40]}'", number)
+        reader.fail(f"a PTX scan begins with its counts of columns and of rows, not with {line.strip()[:40]!a}", number)
     return int(line)
 
 
