@@ -39,11 +39,16 @@ def write_aligned(source: PathLike, output: PathLike, target_from_source: Points
     layout = _las_layout.read_layout(source)
     selection.require_scan(source, 1)
     name = str(output).lower()
+    compress = name.endswith(".laz")
     if name.endswith(".copc.laz"):
         raise FormatError(output, "COPC cannot be written: name it .laz, which keeps all but the octree")
+    if compress and layout.point_format in WAVEFORM_FORMATS:
+        # lazrs 0.8 garbles the wave packets of formats 9 and 10, and LASzip refuses what it makes of 4 and 5.
+        fault = f"point format {layout.point_format} with its waveforms cannot be compressed: name it .las"
+        raise FormatError(output, fault)
     grid = _choose_grid(source, layout, target_from_source)
     with open(source, "rb") as file, atomic_output(output) as moved:
-        _Copy(source, layout, grid, target_from_source, file, moved).write(compress=name.endswith(".laz"))
+        _Copy(source, layout, grid, target_from_source, file, moved).write(compress)
 
 
 def _choose_grid(path: PathLike, layout: Layout, motion: Points) -> Grid:
