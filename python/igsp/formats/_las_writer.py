@@ -70,8 +70,7 @@ def _choose_grid(path: PathLike, layout: Layout, motion: Points) -> Grid:
 def _moved_local(records: Any, layout: Layout, motion: Points) -> Points:
     """Turned, relative to the moved offset of the source: small numbers, whatever the coordinate system."""
     stored = np.column_stack([records["X"], records["Y"], records["Z"]])
-    local: Points = (stored * layout.scale) @ motion[:3, :3].T
-    return local
+    return _motion.turn(motion, stored * layout.scale)
 
 
 class _Copy:
@@ -133,7 +132,7 @@ class _Copy:
             records["X"], records["Y"], records["Z"] = stored.T
             if self.layout.point_format in WAVEFORM_FORMATS:  # the direction of the pulse turns with the points
                 pulse = np.column_stack([records["x_t"], records["y_t"], records["z_t"]]).astype(np.float64)
-                records["x_t"], records["y_t"], records["z_t"] = (pulse @ self.motion[:3, :3].T).T
+                records["x_t"], records["y_t"], records["z_t"] = _motion.turn(self.motion, pulse).T
             yield records
 
     def _write_tail(self, header: bytearray) -> None:

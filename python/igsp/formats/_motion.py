@@ -31,9 +31,14 @@ def as_rigid(matrix: ArrayLike, name: str) -> Points:
 
 def apply(motion: Points, points: Points) -> Points:
     """(N, 3) moved; a point that is not finite stays so."""
+    return turn(motion, points) + motion[:3, 3]
+
+
+def turn(motion: Points, vectors: Points) -> Points:
+    """(N, 3) rotated. Column by column: a matrix product rounds differently as the number of points changes."""
+    x, y, z = vectors.T
     with np.errstate(invalid="ignore"):
-        moved: Points = points @ motion[:3, :3].T + motion[:3, 3]
-    return moved
+        return np.column_stack([row[0] * x + row[1] * y + row[2] * z for row in motion[:3, :3]])
 
 
 def inverse(motion: Points) -> Points:

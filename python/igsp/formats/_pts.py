@@ -35,7 +35,7 @@ def read(path: PathLike, selection: Selection, metadata: Metadata, points_per_ch
 def write_aligned(source: PathLike, output: PathLike, target_from_source: Points, selection: Selection) -> None:
     """Everything after the coordinates of a line stays as it is; the coordinates get as many decimals as the finest."""
     selection.require_scan(source, 1)
-    decimals = max((_decimals(block) for _, _, block in _blocks(source, LINES_AT_ONCE)), default=0)
+    decimals = max(_decimals(reader, block) for reader, _, block in _blocks(source, LINES_AT_ONCE))
     decimals = min(max(decimals, FEWEST_DECIMALS), MOST_DECIMALS)
     with atomic_output(output) as moved:
         for reader, count_line, block in _blocks(source, LINES_AT_ONCE):
@@ -103,8 +103,9 @@ def _count_of(block: Block) -> int | None:
     return int(text) if text.isascii() and text.isdigit() else None
 
 
-def _decimals(block: Block) -> int:
-    """The most digits after the point that a coordinate has."""
+def _decimals(reader: LineReader, block: Block) -> int:
+    """The most digits after the point that a coordinate has. Fails where there are no coordinates."""
+    reader.coordinates(block)
     return max((_decimals_of(value) for _, line in block.numbered() for value in line.split()[:3]), default=0)
 
 

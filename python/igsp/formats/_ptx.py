@@ -114,7 +114,7 @@ def _moved_header(header: Header, target_from_source: Points, selection: Selecti
     new = target_from_source @ header.pose if selection.apply_pose else target_from_source
     motion = new @ _motion.inverse(header.pose)
     position = _motion.apply(motion, header.frame[:1])
-    axes = header.frame[1:] @ motion[:3, :3].T
+    axes = _motion.turn(motion, header.frame[1:])
     rows = [*position, *axes, *new.T]
     lines = list(header.block.lines)
     numbered = [i for i, line in enumerate(lines) if not line.isspace()]
