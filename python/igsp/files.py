@@ -13,14 +13,22 @@ Path = str | os.PathLike[str]
 
 
 def read_points(path: Path) -> Points:
-    """The (N, 3) float64 points of a PLY, PCD or text file (XYZ, TXT, CSV, PTS).
+    """The (N, 3) float64 points of a file: PLY, PCD, text (XYZ, TXT, CSV, PTS), LAS, LAZ, E57 or PTX.
 
-    Points with a coordinate that is not finite are left out, with a warning. OSError names path and line or byte.
+    Points with a coordinate that is not finite are left out, with a warning. OSError names path and line or byte,
+    ImportError the optional package that the format needs. More of a survey format's content: `igsp.formats`.
     """
-    points, dropped = _core.read_points(os.fspath(path))
+    from igsp import formats  # not before it is needed
+
+    name = os.fspath(path)
+    if formats.is_supported(name) and not name.lower().endswith(".pts"):
+        cloud = formats.read_cloud(name)
+        points, dropped = cloud.points, cloud.dropped
+    else:
+        points, dropped = _core.read_points(name)
     if dropped:
-        warnings.warn(f"{os.fspath(path)}: dropped {dropped} of {dropped + len(points)} points with a coordinate that "
-                      "is not finite", stacklevel=2)
+        warnings.warn(f"{name}: dropped {dropped} of {dropped + len(points)} points with a coordinate that is not "
+                      "finite", stacklevel=2)
     return points
 
 

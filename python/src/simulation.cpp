@@ -8,6 +8,16 @@
 #include "arrays.hpp"
 
 namespace igsp::python {
+namespace {
+
+constexpr const char* docstring = R"(Scans of a made-up scene with their true relation, by ray casting.
+
+`scene` is "park" or "indoor", seen by a levelled terrestrial scanner of unknown yaw, or "object", 0.2 m large, seen by
+a range camera in any pose. `points` is about what a station gets, `noise` the standard deviation along the ray [m]
+(None: the scene's own), `station_distance` that between neighbouring stations [m] (0: the scene's own). Every `seed` is
+another scene; the same arguments give the same scans. Raises ValueError.)";
+
+}  // namespace
 
 void bind_simulation(nb::module_& module) {
   nb::class_<SimulatedScan>(module, "SimulatedScan", "One scan in the scanner's own frame, its origin is the sensor.")
@@ -18,6 +28,7 @@ void bind_simulation(nb::module_& module) {
           nb::rv_policy::automatic, "(4, 4) float64: where the scanner stood.")
       .def("__repr__",
            [](const SimulatedScan& scan) { return fmt::format("<SimulatedScan: {} points>", scan.points.size()); });
+  const SimulationOptions defaults;
   module.def(
       "simulate",
       [](const std::string& scene, int stations, int points, std::optional<double> noise, double station_distance,
@@ -29,13 +40,9 @@ void bind_simulation(nb::module_& module) {
                                 .station_distance = station_distance,
                                 .seed = seed});
       },
-      nb::arg("scene"), nb::kw_only(), nb::arg("stations") = 2, nb::arg("points") = 200000,
-      nb::arg("noise") = nb::none(), nb::arg("station_distance") = 0.0, nb::arg("seed") = 7,
-      "Scans of a simulated \"park\" or \"indoor\" by a levelled terrestrial scanner of unknown yaw, or of an "
-      "\"object\"\n"
-      "of 0.2 m by a range camera in any pose, by ray casting. `points` is about what a station gets, `noise` the\n"
-      "standard deviation along the ray [m] (None: the scene's own), `station_distance` that between neighbouring\n"
-      "stations [m] (0: the scene's own); every seed is another scene. The same arguments give the same scans.");
+      nb::arg("scene"), nb::kw_only(), nb::arg("stations") = defaults.stations, nb::arg("points") = defaults.points,
+      nb::arg("noise") = defaults.noise, nb::arg("station_distance") = defaults.station_distance,
+      nb::arg("seed") = defaults.seed, docstring);
 }
 
 }  // namespace igsp::python
