@@ -178,9 +178,7 @@ def test_las_and_laz_turn_into_each_other(tmp_path: Path, first: str, second: st
 @pytest.mark.parametrize("point_format", WAVEFORM_FORMATS)
 def test_waveforms_are_not_compressed(tmp_path: Path, point_format: int) -> None:
     make_las(random_points(10), point_format).write(tmp_path / "source.laz")
-    with pytest.raises(
-        formats.FormatError, match=r"aligned\.laz: point format \d+ with its waveforms .* \.las$"
-    ):
+    with pytest.raises(formats.FormatError, match=r"aligned\.laz: point format \d+ with its waveforms .* \.las$"):
         formats.write_aligned(tmp_path / "source.laz", tmp_path / "aligned.laz", motion())
 
 

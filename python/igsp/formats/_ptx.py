@@ -97,11 +97,10 @@ def _bodies(reader: LineReader, count: int, lines_at_once: int) -> Iterator[Bloc
     columns = 0
     while count > 0:
         block = reader.take(min(count, lines_at_once))
-        lines = list(block.numbered())
-        count -= len(lines)
-        if len(lines) < lines_at_once and count > 0:
+        count -= block.filled
+        if block.filled < lines_at_once and count > 0:
             reader.fail(f"the file ends {count} points too early: it may have been cut short")
-        columns = columns or len(lines[0][1].split())
+        columns = columns or block.columns()
         reader.require_columns(block, columns)
         yield block
 
