@@ -33,6 +33,12 @@ class Block:
         return ((n, line) for n, line in enumerate(self.lines, self.first) if not line.isspace())
 
 
+def as_count(text: str) -> int | None:
+    """A number of points below 10^18; None if it is anything else."""
+    digits = text.strip()
+    return int(digits) if digits.isascii() and digits.isdigit() and len(digits) <= 18 else None
+
+
 class LineReader:
     """Every byte of the file comes back as one character (Latin-1), line ends unchanged, so it can be copied."""
 

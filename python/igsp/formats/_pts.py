@@ -13,12 +13,12 @@ import numpy as np
 from . import _motion
 from ._atomic import atomic_output
 from ._cloud import Metadata, PathLike, Points, Scan, Selection
-from ._lines import Block, LineReader
+from ._lines import Block, LineReader, as_count
 
 LINES_AT_ONCE = 65536
 FEWEST_DECIMALS = 4  # of moved coordinates, a tenth of a millimetre: turning whole metres takes more than whole metres
 MOST_DECIMALS = 12
-COORDINATES = re.compile(r"(\s*)(\S+)(\s+)(\S+)(\s+)(\S+)")
+COORDINATES = re.compile(r"(\s*)\S+(\s+)\S+(\s+)\S+")
 
 
 def read_metadata(path: PathLike, metadata: Metadata) -> None:
@@ -98,8 +98,7 @@ def _counted(reader: LineReader, head: Block, count: int | None, lines_at_once: 
 
 
 def _count_of(block: Block) -> int | None:
-    text = "".join(block.lines).strip()
-    return int(text) if text.isascii() and text.isdigit() else None
+    return as_count("".join(block.lines))
 
 
 def _decimals_of(points: Points, at_least: int) -> int:
@@ -112,12 +111,13 @@ def _decimals_of(points: Points, at_least: int) -> int:
 
 
 def _moved_lines(block: Block, points: Points, decimals: int) -> Iterator[str]:
-    moved = iter(points.tolist())
+    """The lines with new coordinates; blank ones and those of points that are not finite as they are."""
+    rows = iter(points.tolist())
+    finite = iter(np.logical_and.reduce(np.isfinite(points), axis=1).tolist())
     for line in block.lines:
         found = COORDINATES.match(line)
-        point = next(moved) if found else []
-        if not found or not np.isfinite(point).all():  # a blank line, or no point
-            yield line
-            continue
-        x, y, z = (f"{value:.{decimals}f}" for value in point)
-        yield f"{found[1]}{x}{found[3]}{y}{found[5]}{z}{line[found.end() :]}"
+        x, y, z = next(rows) if found else (0, 0, 0)
+        if found and next(finite):
+            a, b, c = found.groups()
+            line = f"{a}{x:.{decimals}f}{b}{y:.{decimals}f}{c}{z:.{decimals}f}{line[found.end() :]}"
+        yield line

@@ -14,7 +14,7 @@ import numpy as np
 from . import _motion
 from ._atomic import atomic_output
 from ._cloud import Metadata, PathLike, Points, Scan, Selection
-from ._lines import Block, LineReader
+from ._lines import Block, LineReader, as_count
 
 HEADER_LINES = 10
 VALUES_PER_LINE = (1, 1, 3, 3, 3, 3, 4, 4, 4, 4)
@@ -124,9 +124,10 @@ def _moved_header(header: Header, target_from_source: Points, selection: Selecti
 
 
 def _count(reader: LineReader, number: int, line: str) -> int:
-    if not (line.strip().isascii() and line.strip().isdigit()):
+    count = as_count(line)
+    if count is None:
         reader.fail(f"a PTX scan begins with its counts of columns and of rows, not with {line.strip()[:40]!a}", number)
-    return int(line)
+    return count
 
 
 def _numbers(reader: LineReader, number: int, line: str, expected: int) -> list[float]:
