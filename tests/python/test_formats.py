@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 import stat
 import sys
+import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -60,6 +63,18 @@ def test_chunks_equal_the_whole(tmp_path: Path, extension: str, points_per_chunk
     assert reader.metadata.no_return == whole.metadata.no_return
     assert len(reader.metadata.scans) == len(formats.read_metadata(path).scans) == len(whole.metadata.scans)
     assert whole.points.flags.c_contiguous and whole.points.flags.owndata
+
+
+@each_format
+def test_memory_is_bounded_by_the_chunk(tmp_path: Path, extension: str) -> None:
+    path = make(tmp_path / f"source.{extension}", random_points(60_000))
+    list(formats.read_chunks(path, 20_000))  # what is imported at first use is not meant
+    tracemalloc.start()
+    count = sum(map(len, formats.read_chunks(path, 500)))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert count > 50_000
+    assert peak < count * 24 / 3  # bytes of a whole cloud
 
 
 def test_chunk_of_no_points(tmp_path: Path) -> None:
@@ -226,3 +241,15 @@ def test_text_needs_no_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
         monkeypatch.setitem(sys.modules, package, None)
     for path in paths:
         assert len(formats.read_cloud(path).points) == 10
+
+
+def test_example_of_the_documentation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    document = (Path(__file__).parents[2] / "docs" / "formats.md").read_text()
+    (code,) = re.findall(r"```python\n(.*?)```", document, re.DOTALL)
+    make(tmp_path / "station.e57", random_points(100))
+    make(tmp_path / "block.laz", random_points(100))
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    exec(code, names)
+    expected = moved(np.array(names["target_from_source"]), names["cloud"].points)
+    np.testing.assert_allclose(formats.read_cloud("aligned.e57", scan=1).points, expected, rtol=0, atol=1e-9)

@@ -151,17 +151,23 @@ def test_fields_unknown_to_the_reader_are_kept(tmp_path: Path) -> None:
     np.testing.assert_array_equal(flags, fields["isIntensityInvalid"])
 
 
+def pose_node(image: Any, pose: np.ndarray) -> Any:
+    node, rotation, translation = (libe57.StructureNode(image) for _ in range(3))
+    for name, value in zip("wxyz", pye57.e57.Quaternion(matrix=pose).elements, strict=True):
+        rotation.set(name, libe57.FloatNode(image, value))
+    for name, value in zip("xyz", pose[:3, 3], strict=True):
+        translation.set(name, libe57.FloatNode(image, value))
+    node.set("rotation", rotation)
+    node.set("translation", translation)
+    return node
+
+
 def add_pictures(image: Any, file: pye57.E57) -> None:
+    """One that names the scan, which gets a pose, and one that does not."""
+    file.data3d[0].set("pose", pose_node(image, motion(0.3)))
     for guid, x in (("{scan}", 1.0), ("", 2.0)):
-        picture, pose = libe57.StructureNode(image), libe57.StructureNode(image)
-        rotation, translation = libe57.StructureNode(image), libe57.StructureNode(image)
-        for name, value in zip("wxyz", (1.0, 0.0, 0.0, 0.0), strict=True):
-            rotation.set(name, libe57.FloatNode(image, value))
-        for name, value in zip("xyz", (x, 0.0, 0.0), strict=True):
-            translation.set(name, libe57.FloatNode(image, value))
-        pose.set("rotation", rotation)
-        pose.set("translation", translation)
-        picture.set("pose", pose)
+        picture = libe57.StructureNode(image)
+        picture.set("pose", pose_node(image, motion(0, (x, 0.0, 0.0))))
         if guid:
             picture.set("associatedData3DGuid", libe57.StringNode(image, guid))
         file.root["images2D"].append(picture)
@@ -225,6 +231,23 @@ def test_pose_that_is_no_motion(two_scans: Path) -> None:
     rebuild(two_scans, b'<w type="Float">', b'<w type="Float">7')
     with pytest.raises(formats.FormatError, match=r"source\.e57: scan 0: its pose is not a rigid motion"):
         formats.read_cloud(two_scans)
+
+
+def test_fewer_points_than_declared(two_scans: Path) -> None:
+    rebuild(two_scans, b'recordCount="3000"', b'recordCount="3500"')
+    with pytest.raises(formats.FormatError, match=r"source\.e57: scan 0"):
+        formats.read_cloud(two_scans)
+
+
+def test_longer_than_declared(two_scans: Path, tmp_path: Path) -> None:
+    length = two_scans.stat().st_size
+    two_scans.write_bytes(two_scans.read_bytes() + bytes(1024))
+    for action in (
+        lambda: formats.read_cloud(two_scans),
+        lambda: formats.write_aligned(two_scans, tmp_path / "aligned.e57", motion()),
+    ):
+        with pytest.raises(formats.FormatError, match=f"the file ends here, its header says at {length}"):
+            action()
 
 
 def test_no_points_and_no_scans(tmp_path: Path) -> None:

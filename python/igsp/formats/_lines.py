@@ -22,10 +22,21 @@ class Block:
 
     first: int
     lines: list[str]
+    filled: int  # lines that are not blank
+
+    def columns(self) -> int:
+        """How many values the first line has that is not blank."""
+        return len(next(self.numbered())[1].split())
 
     def numbered(self) -> Iterator[tuple[int, str]]:
         """The lines that are not blank, with their numbers."""
         return ((n, line) for n, line in enumerate(self.lines, self.first) if not line.isspace())
+
+
+def as_count(text: str) -> int | None:
+    """A number of points below 10^18; None if it is anything else."""
+    digits = text.strip()
+    return int(digits) if digits.isascii() and digits.isdigit() and len(digits) <= 18 else None
 
 
 class LineReader:
@@ -49,12 +60,13 @@ class LineReader:
 
     def take(self, count: int) -> Block:
         """The next `count` lines that are not blank, with the blank ones among them; fewer at the end of the file."""
-        block = Block(self.lines_read + 1, [])
-        missing = count
-        while missing > 0 and (lines := list(islice(self._lines, missing))):
-            block.lines.extend(lines)
-            missing -= sum(not line.isspace() for line in lines)
-        self.lines_read += len(block.lines)
+        lines: list[str] = []
+        filled = 0
+        while filled < count and (more := list(islice(self._lines, count - filled))):
+            lines += more
+            filled += len(more) - sum(map(str.isspace, more))
+        block = Block(self.lines_read + 1, lines, filled)
+        self.lines_read += len(lines)
         return block
 
     def fail(self, fault: str, line: int | None = None) -> NoReturn:
@@ -62,7 +74,7 @@ class LineReader:
 
     def coordinates(self, block: Block) -> Points:
         """The first three numbers of every line that is not blank, (N, 3). Fails at the first line without them."""
-        if not any(True for _ in block.numbered()):
+        if not block.filled:
             return np.empty((0, 3))
         try:
             rows: Points = np.loadtxt(block.lines, dtype=np.float64, comments=None, usecols=(0, 1, 2), ndmin=2)
@@ -72,9 +84,12 @@ class LineReader:
 
     def require_columns(self, block: Block, columns: int) -> None:
         """The last line is where a file cut short shows: it must have as many values as the first had."""
-        number, line = list(block.numbered())[-1]
-        if (found := len(line.split())) != columns:
-            self.fail(f"{found} values where {columns} are expected: the file may have been cut short", number)
+        last = len(block.lines) - 1
+        while block.lines[last].isspace():
+            last -= 1
+        if (found := len(block.lines[last].split())) != columns:
+            fault = f"{found} values where {columns} are expected: the file may have been cut short"
+            self.fail(fault, block.first + last)
 
     def _fail_at_first_bad(self, block: Block) -> NoReturn:
         for number, line in block.numbered():

@@ -13,12 +13,12 @@ import numpy as np
 from . import _motion
 from ._atomic import atomic_output
 from ._cloud import Metadata, PathLike, Points, Scan, Selection
-from ._lines import Block, LineReader
+from ._lines import Block, LineReader, as_count
 
 LINES_AT_ONCE = 65536
 FEWEST_DECIMALS = 4  # of moved coordinates, a tenth of a millimetre: turning whole metres takes more than whole metres
-MOST_DECIMALS = 15
-COORDINATES = re.compile(r"(\s*)(\S+)(\s+)(\S+)(\s+)(\S+)")
+MOST_DECIMALS = 12
+COORDINATES = re.compile(r"(\s*)\S+(\s+)\S+(\s+)\S+")
 
 
 def read_metadata(path: PathLike, metadata: Metadata) -> None:
@@ -35,8 +35,9 @@ def read(path: PathLike, selection: Selection, metadata: Metadata, points_per_ch
 def write_aligned(source: PathLike, output: PathLike, target_from_source: Points, selection: Selection) -> None:
     """Everything after the coordinates of a line stays as it is; the coordinates get as many decimals as the finest."""
     selection.require_scan(source, 1)
-    decimals = max(_decimals(reader, block) for reader, _, block in _blocks(source, LINES_AT_ONCE))
-    decimals = min(max(decimals, FEWEST_DECIMALS), MOST_DECIMALS)
+    decimals = FEWEST_DECIMALS
+    for reader, _, block in _blocks(source, LINES_AT_ONCE):
+        decimals = _decimals_of(reader.coordinates(block), decimals)
     with atomic_output(output) as moved:
         for reader, count_line, block in _blocks(source, LINES_AT_ONCE):
             points = _motion.apply(target_from_source, reader.coordinates(block))
@@ -56,20 +57,19 @@ def _blocks(
         else:
             parts = _counted(reader, head, count, lines_at_once)
         for text, block in parts:
-            total += sum(1 for _ in block.numbered())
+            total += block.filled
             yield reader, text, block
     if metadata is not None:
         metadata.scans = [Scan("scan 0", total, None)]
 
 
 def _uncounted(reader: LineReader, block: Block, lines_at_once: int) -> Iterator[tuple[str, Block]]:
-    first = list(block.numbered())
-    if not first:
+    if not block.filled:
         reader.fail("the file is empty: PTS begins with the number of its points", 1)
-    columns = len(first[0][1].split())
+    columns = block.columns()
     text = reader.mark
     while block.lines:
-        if any(True for _ in block.numbered()):
+        if block.filled:
             reader.require_columns(block, columns)
         yield text, block
         text, block = "", reader.take(lines_at_once)
@@ -82,46 +82,42 @@ def _counted(reader: LineReader, head: Block, count: int | None, lines_at_once: 
         declared, missing = count, count
         while missing > 0:
             block = reader.take(min(missing, lines_at_once))
-            lines = list(block.numbered())
-            missing -= len(lines)
-            if len(lines) < lines_at_once and missing > 0:
+            missing -= block.filled
+            if block.filled < lines_at_once and missing > 0:
                 reader.fail(f"the file ends {missing} points too early: it may have been cut short")
-            columns = columns or len(lines[0][1].split())
+            columns = columns or block.columns()
             reader.require_columns(block, columns)
             yield text, block
             text = ""
         head = reader.take(1)
         count = _count_of(head)
-        if count is None and any(True for _ in head.numbered()):
+        if count is None and head.filled:
             reader.fail(f"more points than the {declared} that were declared")
-    yield text, Block(head.first, [])
-    yield "".join(head.lines), Block(head.first, [])
+    yield text, Block(head.first, [], 0)
+    yield "".join(head.lines), Block(head.first, [], 0)
 
 
 def _count_of(block: Block) -> int | None:
-    text = "".join(block.lines).strip()
-    return int(text) if text.isascii() and text.isdigit() else None
+    return as_count("".join(block.lines))
 
 
-def _decimals(reader: LineReader, block: Block) -> int:
-    """The most digits after the point that a coordinate has. Fails where there are no coordinates."""
-    reader.coordinates(block)
-    return max((_decimals_of(value) for _, line in block.numbered() for value in line.split()[:3]), default=0)
-
-
-def _decimals_of(value: str) -> int:
-    mantissa, _, exponent = value.lower().partition("e")
-    digits = len(mantissa.partition(".")[2])
-    return digits - int(exponent) if exponent else digits
+def _decimals_of(points: Points, at_least: int) -> int:
+    """The fewest decimals that say every coordinate as it was read."""
+    values = points[np.isfinite(points)]
+    decimals = at_least
+    while decimals < MOST_DECIMALS and (np.round(values, decimals) != values).any():
+        decimals += 1
+    return decimals
 
 
 def _moved_lines(block: Block, points: Points, decimals: int) -> Iterator[str]:
-    moved = iter(points.tolist())
+    """The lines with new coordinates; blank ones and those of points that are not finite as they are."""
+    rows = iter(points.tolist())
+    finite = iter(np.logical_and.reduce(np.isfinite(points), axis=1).tolist())
     for line in block.lines:
         found = COORDINATES.match(line)
-        point = next(moved) if found else []
-        if not found or not np.isfinite(point).all():  # a blank line, or no point
-            yield line
-            continue
-        x, y, z = (f"{value:.{decimals}f}" for value in point)
-        yield f"{found[1]}{x}{found[3]}{y}{found[5]}{z}{line[found.end() :]}"
+        x, y, z = next(rows) if found else (0, 0, 0)
+        if found and next(finite):
+            a, b, c = found.groups()
+            line = f"{a}{x:.{decimals}f}{b}{y:.{decimals}f}{c}{z:.{decimals}f}{line[found.end() :]}"
+        yield line

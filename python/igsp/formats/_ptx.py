@@ -14,7 +14,7 @@ import numpy as np
 from . import _motion
 from ._atomic import atomic_output
 from ._cloud import Metadata, PathLike, Points, Scan, Selection
-from ._lines import Block, LineReader
+from ._lines import Block, LineReader, as_count
 
 HEADER_LINES = 10
 VALUES_PER_LINE = (1, 1, 3, 3, 3, 3, 4, 4, 4, 4)
@@ -97,11 +97,10 @@ def _bodies(reader: LineReader, count: int, lines_at_once: int) -> Iterator[Bloc
     columns = 0
     while count > 0:
         block = reader.take(min(count, lines_at_once))
-        lines = list(block.numbered())
-        count -= len(lines)
-        if len(lines) < lines_at_once and count > 0:
+        count -= block.filled
+        if block.filled < lines_at_once and count > 0:
             reader.fail(f"the file ends {count} points too early: it may have been cut short")
-        columns = columns or len(lines[0][1].split())
+        columns = columns or block.columns()
         reader.require_columns(block, columns)
         yield block
 
@@ -125,9 +124,10 @@ def _moved_header(header: Header, target_from_source: Points, selection: Selecti
 
 
 def _count(reader: LineReader, number: int, line: str) -> int:
-    if not (line.strip().isascii() and line.strip().isdigit()):
+    count = as_count(line)
+    if count is None:
         reader.fail(f"a PTX scan begins with its counts of columns and of rows, not with {line.strip()[:40]!a}", number)
-    return int(line)
+    return count
 
 
 def _numbers(reader: LineReader, number: int, line: str, expected: int) -> list[float]:
