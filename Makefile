@@ -4,7 +4,7 @@ jobs := $(shell nproc)
 igsp := build/release/bin/igsp
 demo := build/demo
 
-.PHONY: all build setup demo test deb docs bench calibrate asan tsan fuzz format install clean
+.PHONY: all build setup demo test deb docs wheel bench calibrate asan tsan fuzz format install clean
 
 all: build
 
@@ -28,6 +28,11 @@ demo: setup
 test: build
 	@scripts/setup.sh dpkg-dev fakeroot fish man-db mandoc mkdocs-material zsh
 	ctest --preset release -j $(jobs)
+
+# The Python package, into dist/.
+wheel: setup
+	/usr/bin/python3 -m venv build/wheel
+	build/wheel/bin/pip wheel . --no-deps --wheel-dir dist
 
 asan tsan: setup
 	cmake --preset $@

@@ -9,9 +9,11 @@
 #include "cloud_input.hpp"
 #include "commands.hpp"
 #include "exit_codes.hpp"
+#include "foreign_formats.hpp"
 #include "help_text.hpp"
 #include "igsp/align.hpp"
 #include "igsp/errors.hpp"
+#include "igsp/io.hpp"
 #include "interrupt.hpp"
 #include "option_flags.hpp"
 #include "output_file.hpp"
@@ -41,6 +43,18 @@ bool same_file(const fs::path& a, const fs::path& b) {
   return fs::weakly_canonical(fs::absolute(a), ignored) == fs::weakly_canonical(fs::absolute(b), ignored);
 }
 
+// A survey format is written only from a source of the same format: it keeps what belongs to the points.
+void check_output_format(const AlignSettings& settings) {
+  if (moves_foreign(settings.source, settings.aligned)) return;
+  if (reads_foreign(settings.aligned)) {
+    throw InvalidArgument(fmt::format("-o {}: {} is written only from a SOURCE of the same format, not from {}",
+                                      settings.aligned.string(), settings.aligned.extension().string(),
+                                      settings.source.string()));
+  }
+  check_not_foreign(settings.aligned);
+  format_of(settings.aligned);
+}
+
 // Everything that can be known to fail does so before the long run.
 void check_outputs(const AlignSettings& settings) {
   const std::vector<std::pair<std::string_view, fs::path>> files = {{"SOURCE", settings.source},
@@ -58,7 +72,7 @@ void check_outputs(const AlignSettings& settings) {
     }
     check_writable(path);
   }
-  if (!settings.aligned.empty()) format_of(settings.aligned);
+  if (!settings.aligned.empty()) check_output_format(settings);
 }
 
 std::vector<std::string> warnings_about(const CloudInput& source, const CloudInput& target) {
@@ -97,6 +111,9 @@ bool floats_suffice(PointView points, double voxel_size) {
 }
 
 void write_aligned(const AlignSettings& settings, Points points, const Result& result) {
+  if (moves_foreign(settings.source, settings.aligned)) {
+    return write_moved_foreign(settings.source, settings.aligned, result.target_from_source);
+  }
   for (Eigen::Vector3d& point : points) point = result.target_from_source * point;
   write_points(settings.aligned, points,
                {.format = format_of(settings.aligned), .single_precision = floats_suffice(points, result.voxel_size)});
@@ -135,7 +152,7 @@ int run_align(const AlignSettings& settings) {
   const auto max_points = static_cast<std::size_t>(settings.max_points);
   CloudInput source = read_cloud(settings.source, max_points, "read source", progress);
   CloudInput target = read_cloud(settings.target, max_points, "read target", progress);
-  if (!source.whole() && !settings.aligned.empty()) {
+  if (!source.whole() && !settings.aligned.empty() && !moves_foreign(settings.source, settings.aligned)) {
     throw InvalidArgument(fmt::format("-o needs all points in memory: {} has {}, --max-points is {}",
                                       source.path.string(), source.total, settings.max_points));
   }
@@ -164,7 +181,8 @@ constexpr const char* examples =
     "  igsp align a.pcd b.xyz --preset paper --voxel-size 0.1 -o aligned.ply --transform T.txt --report run.json\n"
     "  igsp align a.ply b.ply --config igsp.toml --threads 4\n"
     "The options start from --preset or --config; flags override them. Exit codes: 0 registered, 1 not registered,\n"
-    "2 usage or option, 3 input or output, 130 interrupted. PLY, PCD and text (XYZ, TXT, CSV, PTS) are read, written.";
+    "2 usage or option, 3 input or output, 130 interrupted. PLY, PCD and text (XYZ, TXT, CSV, PTS) are read, written;\n"
+    "the command of the Python package also takes LAS, LAZ, E57 and PTX, and writes them with all that they hold.";
 
 }  // namespace
 

@@ -13,6 +13,7 @@
 #include "cloud_input.hpp"
 #include "igsp/align.hpp"
 #include "igsp/errors.hpp"
+#include "igsp/io.hpp"
 #include "interrupt.hpp"
 #include "report.hpp"
 

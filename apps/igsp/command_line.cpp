@@ -107,7 +107,8 @@ int parse(CLI::App& app, int argc, char** argv) {
 
 }  // namespace
 
-int run(int argc, char** argv) {
+int run(int argc, char** argv, ForeignFormats formats) {
+  use_foreign_formats(std::move(formats));
   CLI::App app("igsp puts one point cloud onto another, without an initial guess", "igsp");
   app.set_version_flag("--version", fmt::format("igsp {}", version));
   app.footer(footer);
