@@ -9,10 +9,11 @@
 //   geometric_consistency  FPFH, mutual nearest neighbours, GeometricConsistencyGrouping
 //   kfpcs                  ISS keypoints, KFPCSInitialAlignment
 // All but the first two are followed by point-to-plane ICP, which is a second answer. One JSON object goes to standard
-// output: the version of PCL, the peak of the memory before the registration, and per answer its seconds, a label ("" or "icp"), target_from_source
-// (4x4, rows), whether PCL says that it converged, and a score. The seconds are those of the registration from points
-// in memory, all threads together for the CPU; the second answer's include the first's. Lengths that PCL wants are
-// multiples of the voxel size V. Exit code: 0 whatever the answer, 2 for a wrong option, 3 for a file.
+// output: the version of PCL, the peak of the memory before the registration, and per answer its seconds, a label (""
+// or "icp"), target_from_source (4x4, rows), whether PCL says that it converged, and a score. The seconds are those of
+// the registration from points in memory, all threads together for the CPU; the second answer's include the first's.
+// Lengths that PCL wants are multiples of the voxel size V. Exit code: 0 whatever the answer, 2 for a wrong option, 3
+// for a file.
 #include <pcl/pcl_config.h>
 #include <sys/resource.h>
 
