@@ -20,7 +20,7 @@ class Method:
     seeds: int = 1  # runs, for the stochastic ones
     every: int = 1  # of the pairs, for the slow ones
     every_threads: int = 4  # the same for the run on all threads, of those that overlap
-    time_limit_s: int = 60
+    time_limit_s: int = 60  # CPU of the process; a third of it by the clock for what limits itself
     recommended: tuple[tuple[str, float], ...] = ()  # voxel size by group
     from_guess: bool = False  # a fine registration: starts from the perturbed truth
 
