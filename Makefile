@@ -46,7 +46,8 @@ bench-peers:
 	cmake --preset release -DIGSP_BUILD_PEERS=ON
 	cmake --build --preset release --target igsp_app pcl_peer
 	test -x $(peers_python) || /usr/bin/python3 -m venv build/peers-venv
-	$(peers_python) -m pip install --quiet --requirement benchmarks/peers/requirements.txt || echo "some peers cannot be installed"
+	grep -v '^#' benchmarks/peers/requirements.txt | while read -r package; do \
+	  $(peers_python) -m pip install --quiet "$$package" || echo "cannot be installed: $$package"; done
 	$(peers_python) benchmarks/peers/bench_peers.py --cases $(peers_cases) $(peers_options)
 	$(peers_python) benchmarks/peers/summary.py
 	$(peers_python) benchmarks/peers/plots.py
