@@ -133,18 +133,18 @@ class Export(BenchmarkTest):
         self.assertGreater(np.abs(moved - np.eye(4)).max(), 0.5)  # the source did move
 
     def test_selection_seed_and_mistakes(self):
-        def truth(*arguments):
-            self.benchmark(GOOD + SELF, "--only", "self", "--export", "pairs", *arguments)
-            return np.loadtxt(self.folder / "pairs/001_truth.txt")
+        def truth(folder, *arguments):
+            self.benchmark(GOOD + SELF, "--only", "self", "--export", folder, *arguments)
+            return np.loadtxt(self.folder / folder / "001_truth.txt")
 
-        self.assertGreater(np.abs(truth() - truth("--scramble", "8")).max(), 0.1)
-        np.testing.assert_array_equal(truth("--no-scramble"), np.eye(4))
+        self.assertGreater(np.abs(truth("7") - truth("8", "--scramble", "8")).max(), 0.1)
+        np.testing.assert_array_equal(truth("still", "--no-scramble"), np.eye(4))
         run = self.benchmark(MISSING + SELF, "--export", "some", code=3)
         self.assertEqual(run.stderr.count("\n"), 1)
         self.assertIn("missing: left out: ", run.stderr)
         self.assertEqual([row["name"] for row in self.rows(self.folder / "some/cases.csv")], ["self"])
         self.refuses(SELF, "--export", "pairs", "--resume", code=2, saying="--export")
-        self.refuses(SELF, "--export", self.root, code=2, saying="--export")
+        self.refuses(SELF, "--export", self.root, code=2, saying="is there already")  # another list, maybe precious
         (self.folder / "file").write_text("")
         self.refuses(SELF, "--export", "file", code=3, saying="file")
 
