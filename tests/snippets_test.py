@@ -1,12 +1,15 @@
 """What the README and the documentation show works as printed. A page's blocks run in their order, in a folder of the page's
-own:
+own, where the simulated scans source.ply and target.ply stand for those of the reader:
 - console: lines "$ igsp ..." must end with exit code 0, or N where the line says "# exit code N"; output that is shown below a
   line must be what comes out, "..." standing for anything. Of "$ make NAME" the target must exist. Other lines are not run.
 - cpp: compiled against the installed package and run. A block without main() gets one, with two clouds `source`, `target`.
+- csv: written to the file that the text before it names last, in backticks, as in `cases.csv`. If `igsp benchmark` ran, its
+  answers must all have been right.
 - python: run by the interpreter that --python names. Without --python these blocks are left to the run that has it.
 A block whose title ends in "(not run)" shows another program's interface; Python is checked for its syntax, C++ is not.
 """
 import argparse
+import csv
 import os
 import re
 import shutil
@@ -17,7 +20,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 FENCE = re.compile(r'^```(\w+)(?: title="([^"]*)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)
-RUN = ("console", "cpp", "python")
+RUN = ("console", "cpp", "csv", "python")
 
 CMAKE = """cmake_minimum_required(VERSION 3.25)
 project(snippets LANGUAGES CXX)
@@ -116,6 +119,21 @@ def run_console(block: Block, folder: Path, environment: dict[str, str]) -> None
             fail(block, f"{command} printed\n{done.stdout}\nand the page shows\n{shown}")
 
 
+def write_list(block: Block, folder: Path) -> None:
+    before = "".join(block.page.read_text().splitlines(keepends=True)[:block.line - 1])
+    names = re.findall(r"`(\w+\.csv)`", before)
+    if not names:
+        fail(block, "the text before does not name the file, as in `cases.csv`")
+    (folder / names[-1]).write_text(block.text)
+
+
+def check_benchmark(page: Path, results: Path) -> None:
+    """All answers of `igsp benchmark` on the page are right."""
+    with open(results, newline="") as file:
+        if any(row["success"] != "yes" for row in csv.DictReader(file)):
+            sys.exit(f"{page}: a wrong answer in {results}:\n{results.read_text()}")
+
+
 def build_programs(programs: list[Block], args: argparse.Namespace) -> Path:
     """Compiles the C++ blocks of all pages; returns the folder that holds a program per block."""
     folder = args.work / "programs"
@@ -145,19 +163,26 @@ def main() -> None:
         programs = build_programs([block for block in todo if block.language == "cpp"], args)
 
     environment = dict(os.environ, PATH=f"{args.prefix / 'bin'}:{os.environ['PATH']}")
+    run(["igsp", "simulate", "park", "--out", args.work / "scans", "--points", "50000"], env=environment)
     for page, blocks in pages.items():
         folder = args.work / page.stem
         folder.mkdir()
+        for name, station in (("source.ply", "station_1.ply"), ("target.ply", "station_0.ply")):
+            shutil.copy(args.work / "scans" / station, folder / name)
         for block in blocks:
             if not block.is_run:
                 if block.language == "python":
                     compile(block.text, f"{page}:{block.line}", "exec")
             elif block.language == "console":
                 run_console(block, folder, environment)
+            elif block.language == "csv":
+                write_list(block, folder)
             elif block.language == "cpp" and not args.python:
                 run([programs / block.name], cwd=folder)
             elif block.language == "python" and args.python:
                 run([args.python, "-c", block.text], cwd=folder, env=environment)
+        if (folder / "results.csv").exists():
+            check_benchmark(page, folder / "results.csv")
 
 
 if __name__ == "__main__":

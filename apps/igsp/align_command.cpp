@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <iostream>
 #include <optional>
 
@@ -33,6 +34,13 @@ struct AlignSettings {
   bool force = false, quiet = false, verbose = false;
   std::shared_ptr<OptionFlags> option_flags;
 };
+
+// Of all threads.
+double cpu_now_s() {
+  timespec cpu{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+  return static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec);
+}
 
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -158,9 +166,10 @@ int run_align(const AlignSettings& settings) {
   }
   const std::vector<std::string> warnings = warnings_about(source, target);
   stream_large_clouds(source, target, options.scale, progress);
-  const double read = now_s();
+  const double read = now_s(), cpu_before = cpu_now_s();
   Result result = initial ? align(source.points, target.points, *initial, options, progress)
                           : align(source.points, target.points, options, progress);
+  const double cpu_seconds = cpu_now_s() - cpu_before;
   stop_if_interrupted();
   bar.finish();
   result.source.points = source.total;
@@ -171,7 +180,7 @@ int run_align(const AlignSettings& settings) {
   }
   std::cout << answer_text(result, options.scale.voxel_size > 0.0, now_s() - start);
   if (settings.verbose) std::cout << details_text(result);
-  write_outputs(settings, result, align_report(result, source, target, warnings), source);
+  write_outputs(settings, result, align_report(result, source, target, cpu_seconds, warnings), source);
   return result.registered ? exit_registered : exit_not_registered;
 }
 

@@ -79,7 +79,7 @@ Json to_json(const Options& options) {
 }
 
 Json align_report(const Result& result, const CloudInput& source, const CloudInput& target,
-                  const std::vector<std::string>& warnings) {
+                  double cpu_seconds, const std::vector<std::string>& warnings) {
   Json json;
   json["version"] = version;
   json["verdict"] = result.registered ? "registered" : "not_registered";
@@ -104,6 +104,7 @@ Json align_report(const Result& result, const CloudInput& source, const CloudInp
   for (const auto& [stage, seconds] : result.timings_s) {
     json["timings_s"][stage] = json["timings_s"].value(stage, 0.0) + seconds;  // a stage may run once per cloud
   }
+  json["cpu_seconds"] = cpu_seconds;
   json["peak_memory_bytes"] = peak_memory_bytes();
   json["warnings"] = warnings;
   json["options"] = to_json(result.options);

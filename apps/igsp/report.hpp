@@ -17,9 +17,9 @@ Json to_json(const Transformation& transformation);
 /// All options by section, as the option list has them.
 Json to_json(const Options& options);
 
-/// What `igsp align --report` writes.
+/// What `igsp align --report` writes. `cpu_seconds`: of the registration, without reading, all threads.
 Json align_report(const Result& result, const CloudInput& source, const CloudInput& target,
-                  const std::vector<std::string>& warnings);
+                  double cpu_seconds, const std::vector<std::string>& warnings);
 
 std::size_t peak_memory_bytes();
 
