@@ -165,7 +165,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--only", action="append", default=[], metavar="GROUP|GLOB", help="may be given several times")
     parser.add_argument("--peer", action="append", default=[], metavar="NAME", choices=[m.name for m in METHODS],
                         help="only this method; may be given several times")
-    parser.add_argument("--again", action="store_true", help="run also what has an answer, in place of it")
+    parser.add_argument("--again", action="store_true", help="run what has an answer, in place of it")
     parser.add_argument("--minutes", type=float, default=float("inf"), help="start nothing after this time")
     parser.add_argument("--commit", help="that igsp was built from, for its version; by default the present one")
     parser.add_argument("--scramble", type=int, default=7, help="seed of the motions of the sources")
@@ -184,6 +184,7 @@ def key_of_run(name: str, run: Run, scramble: int) -> tuple[str, ...]:
 
 
 def todo_of(args: argparse.Namespace, methods: list[Method], done: set) -> list[tuple[dict[str, str], list[Run]]]:
+    """What has no answer yet; with --again what has one."""
     cases = numbered(read_list(args.cases), args.only)
     if not cases:
         raise SystemExit(f"--only {' '.join(args.only)} selects no case of {args.cases.name}")
@@ -191,7 +192,7 @@ def todo_of(args: argparse.Namespace, methods: list[Method], done: set) -> list[
     for passes in rounds(methods):
         for number, case in cases:
             runs = [run for run in runs_of(case, number, passes, args.every)
-                    if key_of_run(case["name"], run, args.scramble) not in done]
+                    if (key_of_run(case["name"], run, args.scramble) in done) == args.again]
             if runs:
                 todo.append((case, runs))
     return todo
@@ -209,10 +210,9 @@ def main() -> None:
         raise SystemExit("nothing to compare with")
     methods = [m for m in methods if m.program not in missing]
     rows = [row for row in read_rows(args.out) if not row["error"] or row["error"].startswith("stopped after")]
-    todo = todo_of(args, methods, set() if args.again else {key_of(row) for row in rows})
-    if args.again:
-        again = {key_of_run(case["name"], run, args.scramble) for case, runs in todo for run in runs}
-        rows = [row for row in rows if key_of(row) not in again]
+    todo = todo_of(args, methods, {key_of(row) for row in rows})
+    again = {key_of_run(case["name"], run, args.scramble) for case, runs in todo for run in runs}
+    rows = [row for row in rows if key_of(row) not in again]
     args.out.parent.mkdir(parents=True, exist_ok=True)
     write_rows(args.out, rows)
     version = igsp_version(programs, args.commit)
