@@ -1,7 +1,7 @@
 """What the README and the documentation show works as printed. A page's blocks run in their order, in a folder of the page's
 own, where the simulated scans source.ply and target.ply stand for those of the reader:
 - console: lines "$ igsp ..." must end with exit code 0, or N where the line says "# exit code N"; output that is shown below a
-  line must be what comes out, "..." standing for anything. Of "$ make NAME" the target must exist. Other lines are not run.
+  line must be what comes out, "..." standing for anything and numbers being near. Of "$ make NAME" the target must exist. Other lines are not run.
 - cpp: compiled against the installed package and run. A block without main() gets one, with two clouds `source`, `target`.
 - csv: written to the file that the text before it names last, in backticks, as in `cases.csv`. If `igsp benchmark` ran, its
   answers must all have been right.
@@ -20,6 +20,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 FENCE = re.compile(r'^```(\w+)(?: title="([^"]*)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)
+NUMBER = r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 RUN = ("console", "cpp", "csv", "python")
 
 CMAKE = """cmake_minimum_required(VERSION 3.25)
@@ -91,8 +92,13 @@ def run(command, **keywords) -> None:
 
 
 def matches(shown: str, printed: str) -> bool:
-    pattern = "".join(".*" if part == "..." else re.escape(part) for part in re.split(r"(\.\.\.)", shown))
-    return re.fullmatch(pattern, printed, re.DOTALL) is not None
+    """Words as they are, "..." for anything, and numbers within a fifth: better constants do not make the page wrong."""
+    pattern = "".join(r"(?:.*)" if part == "..." else f"({NUMBER})" if re.fullmatch(NUMBER, part) else re.escape(part)
+                      for part in re.split(rf"(\.\.\.|{NUMBER})", shown))
+    match = re.fullmatch(pattern, printed, re.DOTALL)
+    numbers = [float(number) for number in re.findall(rf"\.\.\.|({NUMBER})", shown) if number]
+    return match is not None and all(abs(float(found) - number) <= max(0.2 * abs(number), 0.01)
+                                     for found, number in zip(match.groups(), numbers, strict=True))
 
 
 def check_make_target(block: Block, name: str) -> None:
