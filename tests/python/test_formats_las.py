@@ -69,14 +69,14 @@ def test_direction_of_the_waveform_turns_with_the_points(tmp_path: Path, point_f
     np.testing.assert_allclose(turned, pulse @ motion()[:3, :3].T, rtol=0, atol=1e-6)
 
 
-@pytest.mark.parametrize("version", ["1.0", "1.1", "1.2", "1.3", "1.4", "1.5"])
+@pytest.mark.parametrize("version", ["1.0", "1.1", "1.2", "1.3", "1.4"])
 def test_bytes_that_do_not_depend_on_the_coordinates_stay(tmp_path: Path, version: str) -> None:
-    las = make_las(random_points(200) + UTM_ORIGIN, 6 if version == "1.5" else 1, max(version, "1.1"))
+    las = make_las(random_points(200) + UTM_ORIGIN, 1, max(version, "1.1"))
     las.header.vlrs.append(laspy.VLR("surveyor", 77, "field book", bytes(range(256))))
     las.header.extra_header_bytes = b"header of the instrument"
     las.header.extra_vlr_bytes = b"gap before the points"
     las.header.system_identifier, las.header.generating_software = "SCANNER 9", "office"
-    if version >= "1.4":
+    if version == "1.4":
         las.evlrs = laspy.vlrs.vlrlist.VLRList([laspy.VLR("surveyor", 78, "", b"e" * 1000)])
     source, output = tmp_path / "source.las", tmp_path / "aligned.las"
     las.write(source)
