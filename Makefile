@@ -4,7 +4,7 @@ jobs := $(shell nproc)
 igsp := build/release/bin/igsp
 demo := build/demo
 
-.PHONY: all build setup demo test bench calibrate asan tsan fuzz format install clean
+.PHONY: all build setup demo test wheel bench calibrate asan tsan fuzz format install clean
 
 all: build
 
@@ -25,6 +25,11 @@ demo: setup
 
 test: build
 	ctest --preset release -j $(jobs)
+
+# The Python package, into dist/.
+wheel: setup
+	/usr/bin/python3 -m venv build/wheel
+	build/wheel/bin/pip wheel . --no-deps --wheel-dir dist
 
 asan tsan: setup
 	cmake --preset $@

@@ -17,9 +17,9 @@ from igsp._core import (
     Result,
     RunnerUp,
     SimulatedScan,
-    __version__,
     simulate,
 )
+from igsp._core import version as __version__
 from igsp.errors import Cancelled, NotRegistered
 from igsp.evaluation import match_quality, pose_error, transform_points
 from igsp.files import read_points, read_transformation, write_points, write_transformation

@@ -18,7 +18,10 @@ def points_array(cloud: Any, name: str) -> Points:
     `cloud`: anything NumPy takes for an (N, 3) array of real numbers; an Open3D point cloud, a PyVista data set, a
     laspy LasData (its scaled x, y, z). `name` stands for it in errors.
     """
-    array = np.asanyarray(_coordinates(cloud))
+    try:
+        array = np.asanyarray(_coordinates(cloud))
+    except ValueError as error:  # rows of different lengths
+        raise ValueError(f"{name} is no array: {error}") from error
     if isinstance(array, np.ma.MaskedArray) and np.ma.is_masked(array):
         raise ValueError(f"{name} is a masked array with masked entries; leave out the points that are not there")
     if array.dtype.names is not None:

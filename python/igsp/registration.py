@@ -5,6 +5,7 @@ import contextlib
 import os
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import numpy.typing as npt
 
 from igsp import _core
@@ -35,7 +36,7 @@ def align(source: object, target: object, *, initial: npt.ArrayLike | None = Non
     out of range), TypeError (unknown option), OSError (a file), igsp.Cancelled. The interpreter lock is released, and
     Ctrl-C stops the run.
     """
-    keywords: dict[str, Any] = dict(options)
+    keywords = _plain(options)
     guess = None if initial is None else matrix_array(initial, "initial")
     with _progress_function(progress) as report:
         if not isinstance(source, Features) and not isinstance(target, Features):
@@ -52,12 +53,22 @@ def extract_features(cloud: object, *, progress: Progress = False, **options: Un
     size from the Features.
     """
     with _progress_function(progress) as report:
-        return _core.extract_features(_load(cloud, "cloud"), dict(options), report)
+        return _core.extract_features(_load(cloud, "cloud"), _plain(options), report)
 
 
 def options(**options: Unpack[OptionKeywords]) -> dict[str, bool | int | float | str]:
     """All options with their values, after the preset and the given ones; `align(..., **options)` takes them."""
-    return _core.resolve_options(dict(options))
+    return _core.resolve_options(_plain(options))
+
+
+def _plain(options: OptionKeywords) -> dict[str, Any]:
+    """Paths as strings, NumPy's numbers as Python's."""
+    def plain(value: Any) -> Any:
+        if isinstance(value, np.generic):
+            return value.item()
+        return os.fspath(value) if isinstance(value, os.PathLike) else value
+
+    return {name: plain(value) for name, value in options.items()}
 
 
 def _load(cloud: object, name: str) -> Points:

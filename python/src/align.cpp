@@ -17,7 +17,7 @@ const Features& input_of(const Features& features) {
 }
 
 template <typename Input>
-Result run(const Input& source, const Input& target, const std::optional<MatrixIn>& initial, const nb::dict& keywords,
+Result run(const Input& source, const Input& target, const std::optional<MatrixIn>& initial, const Keywords& keywords,
            nb::handle progress) {
   const Options options = options_of(keywords);
   const ProgressCallback callback = progress_of(progress);

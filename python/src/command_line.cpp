@@ -1,5 +1,6 @@
 #include "command_line.hpp"
 
+#include <fmt/format.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -14,6 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Without the "[Errno 2] " that Python puts before what the system says of a file.
+std::string message_of(nb::handle error) {
+  const nb::object file = nb::getattr(error, "filename", nb::none()),
+                   reason = nb::getattr(error, "strerror", nb::none());
+  if (file.is_none() || reason.is_none()) return nb::str(error).c_str();
+  return fmt::format("{}: {}", nb::str(file).c_str(), nb::str(reason).c_str());
+}
+
 // Runs `body` with the interpreter lock. What Python raises becomes the error that the command knows how to tell.
 template <typename Body>
 auto in_python(const Body& body) {
@@ -21,7 +30,7 @@ auto in_python(const Body& body) {
   try {
     return body();
   } catch (nb::python_error& error) {
-    const std::string message = nb::str(error.value()).c_str();
+    const std::string message = message_of(error.value());
     if (error.matches(PyExc_KeyboardInterrupt)) throw Cancelled();
     if (error.matches(PyExc_OSError) || error.matches(PyExc_ImportError)) throw FileError(message);
     if (error.matches(PyExc_ValueError)) throw InvalidArgument(message);

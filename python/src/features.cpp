@@ -17,7 +17,7 @@ auto array(const Features& self) {
   return array_of(self.*member);
 }
 
-Features extract(const PointsIn& cloud, const nb::dict& keywords, nb::handle progress) {
+Features extract(const PointsIn& cloud, const Keywords& keywords, nb::handle progress) {
   const Options options = options_of(keywords);
   const ProgressCallback callback = progress_of(progress);
   nb::gil_scoped_release unlocked;

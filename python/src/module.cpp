@@ -4,7 +4,7 @@
 NB_MODULE(_core, module) {
   using namespace igsp::python;
   module.doc() = "The C++ library as it is; the package igsp is the door to it.";
-  module.attr("__version__") = igsp::version;
+  module.attr("version") = igsp::version;
   bind_errors(module);
   bind_options(module);
   bind_result(module);

@@ -39,36 +39,36 @@ const Option& find_option(const std::string& keyword) {
   fail_unknown(keyword);
 }
 
-// Takes NumPy's numbers, too. Python's True is an integer; here it is not.
 OptionValue value_of(const std::string& keyword, nb::handle value) {
-  if (nb::isinstance<nb::bool_>(value)) return nb::cast<bool>(value);
+  if (nb::isinstance<nb::bool_>(value)) return nb::cast<bool>(value);  // first: to Python it is an integer, too
   if (nb::isinstance<nb::str>(value)) return nb::cast<std::string>(value);
-  if (PyIndex_Check(value.ptr())) {
-    int integer = 0;
-    if (nb::try_cast(nb::steal(PyNumber_Index(value.ptr())), integer)) return integer;
-    PyErr_Clear();
-  }
-  const double real = PyNumber_Check(value.ptr()) ? PyFloat_AsDouble(value.ptr()) : -1.0;
-  if (!PyNumber_Check(value.ptr()) || PyErr_Occurred()) {
-    PyErr_Clear();
-    throw InvalidArgument(
-        fmt::format("option {} is {}; it must be a number, a name or a boolean", keyword, nb::repr(value).c_str()));
-  }
-  return real;
+  int integer = 0;
+  if (nb::isinstance<nb::int_>(value) && nb::try_cast(value, integer)) return integer;
+  double real = 0.0;
+  if (nb::try_cast(value, real)) return real;
+  throw InvalidArgument(
+      fmt::format("option {} is {}; it must be a number, a name or a boolean", keyword, nb::repr(value).c_str()));
 }
 
-Options start_of(const nb::dict& keywords) {
+std::string text_of(const Keywords& keywords, const char* keyword) {
+  const nb::object value = keywords[keyword];
+  std::string text;
+  if (nb::try_cast(value, text)) return text;
+  throw InvalidArgument(fmt::format("option {} is {}; it must be a string", keyword, nb::repr(value).c_str()));
+}
+
+Options start_of(const Keywords& keywords) {
   const bool has_config = keywords.contains("config"), has_preset = keywords.contains("preset");
   if (has_config && has_preset) {
     throw InvalidArgument("preset and config both say where the options start: give one of them");
   }
-  if (has_config) return read_options(nb::cast<std::string>(nb::str(keywords["config"])));
-  return preset(has_preset ? nb::cast<std::string>(nb::str(keywords["preset"])) : "default");
+  if (has_config) return read_options(text_of(keywords, "config"));
+  return preset(has_preset ? text_of(keywords, "preset") : "default");
 }
 
-nb::dict described(const Option& option) {
+Keywords described(const Option& option) {
   constexpr std::string_view kinds[] = {"boolean", "integer", "real", "choice"};
-  nb::dict entry;
+  Keywords entry;
   entry["keyword"] = keyword_of(option);
   entry["key"] = option.key;
   entry["flag"] = option.flag;
@@ -83,7 +83,7 @@ nb::dict described(const Option& option) {
 
 }  // namespace
 
-Options options_of(const nb::dict& keywords) {
+Options options_of(const Keywords& keywords) {
   Options options = start_of(keywords);
   for (const auto& [key, value] : keywords) {
     const std::string keyword = nb::cast<std::string>(key);
@@ -94,8 +94,8 @@ Options options_of(const nb::dict& keywords) {
   return options;
 }
 
-nb::dict keywords_of(const Options& options) {
-  nb::dict keywords;
+Keywords keywords_of(const Options& options) {
+  Keywords keywords;
   for (const Option& option : option_list()) keywords[keyword_of(option).c_str()] = option.get(options);
   return keywords;
 }
@@ -104,7 +104,7 @@ void bind_options(nb::module_& module) {
   module.def(
       "option_list",
       [] {
-        nb::typed<nb::list, nb::dict> entries;
+        nb::typed<nb::list, Keywords> entries;
         for (const Option& option : option_list()) entries.append(described(option));
         return entries;
       },
@@ -118,7 +118,7 @@ void bind_options(nb::module_& module) {
       },
       "The names that the option `preset` takes.");
   module.def(
-      "resolve_options", [](const nb::dict& keywords) { return keywords_of(options_of(keywords)); },
+      "resolve_options", [](const Keywords& keywords) { return keywords_of(options_of(keywords)); },
       nb::arg("keywords"), "All options as keywords, after the preset and the given ones.");
 }
 
