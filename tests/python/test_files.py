@@ -1,4 +1,5 @@
 """Clouds and transformations in files."""
+
 import laspy
 import numpy as np
 import pytest
@@ -33,8 +34,12 @@ def test_a_transformation(tmp_path, truth):
 def test_faults_of_files_name_path_and_place(tmp_path, pair):
     broken = tmp_path / "broken.xyz"
     broken.write_text("1 2 3\n1 two 3\n")
-    for path, words in [(broken, "broken.xyz.*line 2"), (tmp_path / "nowhere.ply", "nowhere.ply"),
-                        (tmp_path / "nowhere.laz", "nowhere.laz"), (tmp_path / "cloud.foo", "cloud.foo")]:
+    for path, words in [
+        (broken, "broken.xyz.*line 2"),
+        (tmp_path / "nowhere.ply", "nowhere.ply"),
+        (tmp_path / "nowhere.laz", "nowhere.laz"),
+        (tmp_path / "cloud.foo", "cloud.foo"),
+    ]:
         with pytest.raises(OSError, match=words):
             igsp.read_points(path)
         with pytest.raises(OSError, match=words):

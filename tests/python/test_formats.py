@@ -12,7 +12,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from formats_testing import e57_attributes, make_e57, make_las, motion, moved, ptx_text, random_points
+from formats_testing import (
+    UTM_ORIGIN,
+    e57_attributes,
+    make_double_e57,
+    make_e57,
+    make_las,
+    motion,
+    moved,
+    ptx_text,
+    random_points,
+)
 from igsp import formats
 
 COUNT = 2000
@@ -90,8 +100,6 @@ def test_points_that_are_not_finite_are_left_out_and_counted(tmp_path: Path, ext
     attributes = e57_attributes(points)
     path = tmp_path / f"source.{extension}"
     if extension == "e57":
-        from formats_testing import make_double_e57
-
         make_double_e57(path, {name: attributes[name].copy() for name in ("cartesianX", "cartesianY", "cartesianZ")})
     else:
         make(path, points)
@@ -213,6 +221,22 @@ def test_matrix_that_is_no_motion(tmp_path: Path, matrix: np.ndarray, fault: str
     path = make(tmp_path / "source.pts", random_points(10))
     with pytest.raises(ValueError, match=fault):
         formats.write_aligned(path, tmp_path / "aligned.pts", matrix)
+
+
+@each_format
+def test_rounded_matrix_at_utm_coordinates(tmp_path: Path, extension: str) -> None:
+    """Six digits of a rotation are metres at the origin of UTM: the points go where the matrix as given puts them."""
+    path, output = tmp_path / f"source.{extension}", tmp_path / f"aligned.{extension}"
+    if extension == "e57":
+        make_e57(path, [(e57_attributes(random_points(50)), motion(1, tuple(UTM_ORIGIN)))])
+    elif extension == "ptx":
+        path.write_text(ptx_text([(random_points(50), motion(1, tuple(UTM_ORIGIN)))], columns=5))
+    else:
+        make(path, random_points(50) + UTM_ORIGIN)
+    matrix = np.round(motion(), 6)
+    formats.write_aligned(path, output, matrix)
+    expected = moved(matrix, formats.read_cloud(path).points)
+    np.testing.assert_allclose(formats.read_cloud(output).points, expected, rtol=0, atol=5e-4)
 
 
 @pytest.mark.parametrize(
