@@ -74,7 +74,7 @@ def _moved_local(records: Any, layout: Layout, motion: Points) -> Points:
 
 
 class _Copy:
-    """One file on its way into another: header, records, points, what follows, and the header again as it turned out."""
+    """One file on its way into another: header, records, points, what follows, then the header as it turned out."""
 
     def __init__(
         self, path: PathLike, layout: Layout, grid: Grid, motion: Points, file: BinaryIO, moved: BinaryIO
