@@ -24,6 +24,7 @@ from formats_testing import (
     random_points,
 )
 from igsp import formats
+from igsp.formats import _e57_file
 
 COUNT = 2000
 
@@ -152,6 +153,33 @@ def test_rubbish(tmp_path: Path, extension: str) -> None:
         for action in actions(path, tmp_path / f"aligned.{extension}"):
             with pytest.raises(formats.FormatError, match=f"source.{extension}: (line|byte) "):
                 action()
+
+
+@each_format
+def test_damaged_bytes_are_read_or_named(tmp_path: Path, extension: str) -> None:
+    """Whatever a damaged file does to the reader, it is a FormatError: no other exception, no endless loop."""
+    content = make(tmp_path / f"source.{extension}", random_points(100)).read_bytes()
+    path = tmp_path / f"damaged.{extension}"
+    random = np.random.default_rng(5)
+    faults = 0
+    for _ in range(150):
+        damaged = bytearray(content)
+        reach = random.choice([120, 400, len(content)])
+        for position in random.integers(0, reach, random.choice([1, 2, 8])):
+            damaged[position] = random.choice([0, 255, random.integers(256)])
+        path.write_bytes(_with_checksums(damaged) if extension == "e57" else damaged)
+        for action in actions(path, tmp_path / f"aligned.{extension}"):
+            try:
+                action()
+            except formats.FormatError as error:
+                assert str(error).startswith(f"{path}: ")
+                faults += 1
+    assert faults > 30
+
+
+def _with_checksums(content: bytearray) -> bytes:
+    """Of E57: otherwise they find all damage, and nothing behind them is tested."""
+    return _e57_file.make_pages(b"".join(content[i : i + 1020] for i in range(0, len(content), 1024))).tobytes()
 
 
 @each_format
