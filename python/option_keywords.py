@@ -2,11 +2,12 @@
 
 usage: option_keywords.py FOLDER_OF_THE_EXTENSION OUTPUT
 """
+
 import sys
 import textwrap
 from pathlib import Path
 
-HEADER = '''"""Generated from the library's list of options: the keywords of `igsp.align` and `igsp.extract_features`."""
+HEADER = '''"""Generated from the library's list of options: the keywords of `align` and `extract_features`."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, TypedDict
@@ -44,7 +45,9 @@ def main():
     presets = "Literal[" + ", ".join(f'"{name}"' for name in _core.preset_names()) + "]"
     text = HEADER
     text += field("preset", presets, "where the options start")
-    text += field("config", "str | os.PathLike[str]", "where they start instead: a TOML file as `igsp options` prints it")
+    text += field(
+        "config", "str | os.PathLike[str]", "where they start instead: a TOML file, see `igsp options`"
+    )
     for option in _core.option_list():
         text += field(option["keyword"], type_of(option), help_of(option))
     Path(output).write_text(text)

@@ -5,6 +5,7 @@
 >>> print(result)
 >>> result.target_from_source  # p_target = target_from_source * p_source
 """
+
 from igsp._core import (
     CloudSummary,
     Evidence,

@@ -1,4 +1,5 @@
 """The igsp command: the same as the C++ one."""
+
 from __future__ import annotations
 
 import signal

@@ -1,4 +1,5 @@
 """Points and transformations as they come: brought into the one form that the library takes, copied only if need be."""
+
 from __future__ import annotations
 
 from typing import Any
@@ -25,8 +26,10 @@ def points_array(cloud: Any, name: str) -> Points:
     if isinstance(array, np.ma.MaskedArray) and np.ma.is_masked(array):
         raise ValueError(f"{name} is a masked array with masked entries; leave out the points that are not there")
     if array.dtype.names is not None:
-        raise ValueError(f"{name} is a structured array with the fields {', '.join(array.dtype.names)}; "
-                         "expected an (N, 3) array, such as numpy.stack of x, y and z along the last axis")
+        raise ValueError(
+            f"{name} is a structured array with the fields {', '.join(array.dtype.names)}; "
+            "expected an (N, 3) array, such as numpy.stack of x, y and z along the last axis"
+        )
     if array.dtype.kind not in "fiu":
         raise ValueError(f"{name} has dtype {array.dtype}; expected real numbers")
     if array.ndim != 2 or array.shape[1] != 3:
@@ -59,8 +62,10 @@ def matrix_array(matrix: npt.ArrayLike, name: str) -> Matrix:
     rotation = array[:3, :3]
     deviation = np.abs(rotation.T @ rotation - np.eye(3)).max()
     if deviation > _RIGID_TOLERANCE:
-        raise ValueError(f"{name} is not a rigid motion: R^T R differs from the identity by {deviation:.3g} "
-                         f"(at most {_RIGID_TOLERANCE})")
+        raise ValueError(
+            f"{name} is not a rigid motion: R^T R differs from the identity by {deviation:.3g} "
+            f"(at most {_RIGID_TOLERANCE})"
+        )
     if np.linalg.det(rotation) < 0:
         raise ValueError(f"{name} is not a rigid motion but a reflection (determinant -1)")
     return array

@@ -1,4 +1,5 @@
 """What goes wrong: ValueError for a caller's mistake, OSError for a file, and the two below."""
+
 from __future__ import annotations
 
 from igsp._core import Cancelled, Result

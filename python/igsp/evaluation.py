@@ -1,4 +1,5 @@
 """Answers against the truth, and transformations at work."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -20,8 +21,13 @@ def pose_error(estimate: npt.ArrayLike, truth: npt.ArrayLike, source_centroid: n
     return _core.pose_error(matrix_array(estimate, "estimate"), matrix_array(truth, "truth"), centroid)
 
 
-def match_quality(correspondences: npt.ArrayLike, source_keypoints: object, target_keypoints: object,
-                  truth: npt.ArrayLike, radius: float) -> MatchQuality:
+def match_quality(
+    correspondences: npt.ArrayLike,
+    source_keypoints: object,
+    target_keypoints: object,
+    truth: npt.ArrayLike,
+    radius: float,
+) -> MatchQuality:
     """Precision and recall of (M, 2) correspondences at the true target_from_source (Eq. 14).
 
     `correspondences` are indices into the (K, 3) keypoints, as `IterationRecord.correspondences` into those of the
@@ -29,18 +35,23 @@ def match_quality(correspondences: npt.ArrayLike, source_keypoints: object, targ
     """
     matches = np.asarray(correspondences)
     if matches.ndim != 2 or matches.shape[1] != 2 or matches.dtype.kind not in "iu":
-        raise ValueError(f"correspondences has shape {matches.shape} and dtype {matches.dtype}; "
-                         "expected (M, 2) integers")
-    source, target = points_array(source_keypoints, "source_keypoints"), points_array(target_keypoints,
-                                                                                      "target_keypoints")
+        raise ValueError(
+            f"correspondences has shape {matches.shape} and dtype {matches.dtype}; expected (M, 2) integers"
+        )
+    source, target = (
+        points_array(source_keypoints, "source_keypoints"),
+        points_array(target_keypoints, "target_keypoints"),
+    )
     if matches.size and (matches.min() < 0 or (matches >= [len(source), len(target)]).any()):
-        raise ValueError(f"correspondences has an index outside of {len(source)} source_keypoints and {len(target)} "
-                         "target_keypoints")
+        raise ValueError(
+            f"correspondences has an index outside of {len(source)} source_keypoints and {len(target)} target_keypoints"
+        )
     matches = np.require(matches, np.uint32, ["C_CONTIGUOUS", "ALIGNED"])
     return _core.match_quality(matches, source, target, matrix_array(truth, "truth"), radius)
 
 
 def transform_points(points: object, target_from_source: npt.ArrayLike) -> Points:
     """The (N, 3) float64 points moved by a (4, 4) transformation: p_target = target_from_source * p_source."""
-    return _core.transform_points(points_array(points, "points"),
-                                  matrix_array(target_from_source, "target_from_source"))
+    return _core.transform_points(
+        points_array(points, "points"), matrix_array(target_from_source, "target_from_source")
+    )

@@ -1,4 +1,5 @@
 """Clouds and transformations in files."""
+
 from __future__ import annotations
 
 import os
@@ -27,8 +28,10 @@ def read_points(path: Path) -> Points:
     else:
         points, dropped = _core.read_points(name)
     if dropped:
-        warnings.warn(f"{name}: dropped {dropped} of {dropped + len(points)} points with a coordinate that is not "
-                      "finite", stacklevel=2)
+        warnings.warn(
+            f"{name}: dropped {dropped} of {dropped + len(points)} points with a coordinate that is not finite",
+            stacklevel=2,
+        )
     return points
 
 

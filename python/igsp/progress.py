@@ -1,4 +1,5 @@
 """Progress of a run on standard error."""
+
 from __future__ import annotations
 
 import sys
@@ -7,7 +8,7 @@ from collections.abc import Callable
 from types import TracebackType
 
 ProgressFunction = Callable[[str, float], object]
-"""Called with a stage's name and the share of it that is done, [0, 1]. Returning False stops the run: igsp.Cancelled."""
+"""Called with a stage's name and the share of it that is done, [0, 1]. Returning False stops: igsp.Cancelled."""
 
 _WIDTH = 40
 
@@ -23,8 +24,9 @@ class ProgressBar:
     def __enter__(self) -> ProgressBar:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None,
-                 traceback: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, traceback: TracebackType | None
+    ) -> None:
         if self._stage:
             sys.stderr.write("\n")
 

@@ -1,4 +1,5 @@
 """The two doors: `align` for clouds, `extract_features` and then `align` for clouds that are used more than once."""
+
 from __future__ import annotations
 
 import contextlib
@@ -22,8 +23,14 @@ if TYPE_CHECKING:
 Progress = bool | ProgressFunction
 
 
-def align(source: object, target: object, *, initial: npt.ArrayLike | None = None, progress: Progress = False,
-          **options: Unpack[OptionKeywords]) -> Result:
+def align(
+    source: object,
+    target: object,
+    *,
+    initial: npt.ArrayLike | None = None,
+    progress: Progress = False,
+    **options: Unpack[OptionKeywords],
+) -> Result:
     """The rigid transformation that puts `source` onto `target`, without an initial guess, and whether to believe it.
 
     `source`, `target`: each a path, an (N, 3) array in one common unit of length, an Open3D, PyVista or laspy cloud, or
@@ -42,8 +49,13 @@ def align(source: object, target: object, *, initial: npt.ArrayLike | None = Non
         if not isinstance(source, Features) and not isinstance(target, Features):
             return _core.align_points(_load(source, "source"), _load(target, "target"), guess, keywords, report)
         _share_voxel_size(source, target, keywords)
-        return _core.align_features(_features(source, "source", keywords, report),
-                                    _features(target, "target", keywords, report), guess, keywords, report)
+        return _core.align_features(
+            _features(source, "source", keywords, report),
+            _features(target, "target", keywords, report),
+            guess,
+            keywords,
+            report,
+        )
 
 
 def extract_features(cloud: object, *, progress: Progress = False, **options: Unpack[OptionKeywords]) -> Features:
@@ -63,6 +75,7 @@ def options(**options: Unpack[OptionKeywords]) -> dict[str, bool | int | float |
 
 def _plain(options: OptionKeywords) -> dict[str, Any]:
     """Paths as strings, NumPy's numbers as Python's."""
+
     def plain(value: Any) -> Any:
         if isinstance(value, np.generic):
             return value.item()

@@ -1,4 +1,5 @@
 """What the command line asks of igsp.formats, see apps/igsp/foreign_formats.hpp."""
+
 from __future__ import annotations
 
 import os

@@ -1,6 +1,5 @@
 #include "arrays.hpp"
 
-#include <algorithm>
 #include <memory>
 
 namespace igsp::python {
@@ -24,43 +23,51 @@ Transformation transformation_of(const MatrixIn& matrix) {
   return transformation;
 }
 
-PointsOut array_of(const Points& points) {
+ReadOnly<double, -1, 3> read_only_view(const Points& points) {
   return {reinterpret_cast<const double*>(points.data()), {points.size(), 3}};
 }
 
-VectorOut array_of(const Eigen::Vector3d& vector) {
+ReadOnly<double, 3> read_only_view(const Eigen::Vector3d& vector) {
   return {vector.data(), {3}};
 }
 
-Vector6Out array_of(const Eigen::Matrix<double, 6, 1>& vector) {
-  return {vector.data(), {6}};
-}
-
-Matrix6Out array_of(const Eigen::Matrix<double, 6, 6>& matrix) {
-  return {matrix.data(), {6, 6}, {}, {1, 6}};
-}
-
-MatchesOut array_of(const std::vector<KeypointMatch>& matches) {
-  return {reinterpret_cast<const std::uint32_t*>(matches.data()), {matches.size(), 2}};
-}
-
-FramesOut array_of(const std::vector<Eigen::Matrix3d>& frames) {
+ReadOnly<double, -1, 3, 3> read_only_view(const std::vector<Eigen::Matrix3d>& frames) {
   return {reinterpret_cast<const double*>(frames.data()), {frames.size(), 3, 3}, {}, {9, 1, 3}};  // Eigen: by columns
 }
 
-DescriptorsOut array_of(const std::vector<Descriptor>& descriptors) {
+ReadOnly<std::uint64_t, -1, bsc_words> read_only_view(const std::vector<Descriptor>& descriptors) {
   return {reinterpret_cast<const std::uint64_t*>(descriptors.data()), {descriptors.size(), bsc_words}};
 }
 
-FloatsOut array_of(const std::vector<float>& values) {
+ReadOnly<float, -1> read_only_view(const std::vector<float>& values) {
   return {values.data(), {values.size()}};
 }
 
-IndicesOut array_of(const std::vector<std::uint32_t>& values) {
+ReadOnly<std::uint32_t, -1> read_only_view(const std::vector<std::uint32_t>& values) {
   return {values.data(), {values.size()}};
 }
 
-MatrixOut array_of(const Transformation& transformation) {
+Array<double, -1, 3> view(Points& points) {
+  return {reinterpret_cast<double*>(points.data()), {points.size(), 3}};
+}
+
+Array<double, 3> view(Eigen::Vector3d& vector) {
+  return {vector.data(), {3}};
+}
+
+Array<double, 6> view(Eigen::Matrix<double, 6, 1>& vector) {
+  return {vector.data(), {6}};
+}
+
+Array<double, 6, 6> view(Eigen::Matrix<double, 6, 6>& matrix) {
+  return {matrix.data(), {6, 6}, {}, {1, 6}};
+}
+
+Array<std::uint32_t, -1, 2> view(std::vector<KeypointMatch>& matches) {
+  return {reinterpret_cast<std::uint32_t*>(matches.data()), {matches.size(), 2}};
+}
+
+Array<double, 4, 4> array_of(const Transformation& transformation) {
   using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
   auto matrix = std::make_unique<RowMajor>(transformation.matrix());
   double* data = matrix->data();
@@ -68,7 +75,7 @@ MatrixOut array_of(const Transformation& transformation) {
   return {data, {4, 4}, owner};
 }
 
-OwnPointsOut array_of(Points&& points) {
+Array<double, -1, 3> array_of(Points&& points) {
   auto kept = std::make_unique<Points>(std::move(points));
   double* data = reinterpret_cast<double*>(kept->data());
   const std::size_t size = kept->size();

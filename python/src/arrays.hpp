@@ -22,31 +22,27 @@ PointView view_of(const PointsIn& points);
 std::span<const KeypointMatch> view_of(const MatchesIn& matches);
 Transformation transformation_of(const MatrixIn& matrix);
 
-// What goes out: read-only views of an object that is a property's `self`, which nanobind then keeps alive ...
-using PointsOut = nb::ndarray<const double, nb::numpy, nb::shape<-1, 3>>;
-using VectorOut = nb::ndarray<const double, nb::numpy, nb::shape<3>>;
-using Vector6Out = nb::ndarray<const double, nb::numpy, nb::shape<6>>;
-using Matrix6Out = nb::ndarray<const double, nb::numpy, nb::shape<6, 6>>;
-using MatchesOut = nb::ndarray<const std::uint32_t, nb::numpy, nb::shape<-1, 2>>;
-using FramesOut = nb::ndarray<const double, nb::numpy, nb::shape<-1, 3, 3>>;
-using DescriptorsOut = nb::ndarray<const std::uint64_t, nb::numpy, nb::shape<-1, bsc_words>>;
-using FloatsOut = nb::ndarray<const float, nb::numpy, nb::shape<-1>>;
-using IndicesOut = nb::ndarray<const std::uint32_t, nb::numpy, nb::shape<-1>>;
+// What goes out. Features come in again, where a changed index would be trusted: read-only views of them, ...
+template <typename Scalar, nb::ssize_t... sizes>
+using ReadOnly = nb::ndarray<const Scalar, nb::numpy, nb::shape<sizes...>>;
+ReadOnly<double, -1, 3> read_only_view(const Points& points);
+ReadOnly<double, 3> read_only_view(const Eigen::Vector3d& vector);
+ReadOnly<double, -1, 3, 3> read_only_view(const std::vector<Eigen::Matrix3d>& frames);
+ReadOnly<std::uint64_t, -1, bsc_words> read_only_view(const std::vector<Descriptor>& descriptors);
+ReadOnly<float, -1> read_only_view(const std::vector<float>& values);
+ReadOnly<std::uint32_t, -1> read_only_view(const std::vector<std::uint32_t>& values);
 
-PointsOut array_of(const Points& points);
-VectorOut array_of(const Eigen::Vector3d& vector);
-Vector6Out array_of(const Eigen::Matrix<double, 6, 1>& vector);
-Matrix6Out array_of(const Eigen::Matrix<double, 6, 6>& matrix);
-MatchesOut array_of(const std::vector<KeypointMatch>& matches);
-FramesOut array_of(const std::vector<Eigen::Matrix3d>& frames);
-DescriptorsOut array_of(const std::vector<Descriptor>& descriptors);
-FloatsOut array_of(const std::vector<float>& values);
-IndicesOut array_of(const std::vector<std::uint32_t>& values);
+// ... views of what is only an answer (both for properties, which keep the object that owns the memory alive), ...
+template <typename Scalar, nb::ssize_t... sizes>
+using Array = nb::ndarray<Scalar, nb::numpy, nb::shape<sizes...>>;
+Array<double, -1, 3> view(Points& points);
+Array<double, 3> view(Eigen::Vector3d& vector);
+Array<double, 6> view(Eigen::Matrix<double, 6, 1>& vector);
+Array<double, 6, 6> view(Eigen::Matrix<double, 6, 6>& matrix);
+Array<std::uint32_t, -1, 2> view(std::vector<KeypointMatch>& matches);
 
-// ... and arrays of their own, free to be changed.
-using MatrixOut = nb::ndarray<double, nb::numpy, nb::shape<4, 4>, nb::c_contig>;
-using OwnPointsOut = nb::ndarray<double, nb::numpy, nb::shape<-1, 3>, nb::c_contig>;
-MatrixOut array_of(const Transformation& transformation);
-OwnPointsOut array_of(Points&& points);
+// ... and arrays that own their memory.
+Array<double, 4, 4> array_of(const Transformation& transformation);
+Array<double, -1, 3> array_of(Points&& points);
 
 }  // namespace igsp::python

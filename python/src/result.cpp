@@ -30,9 +30,13 @@ nb::object raise_if_not_registered(nb::handle_t<Result> self) {
   return nb::borrow(self);
 }
 
-// The array of one member.
 template <typename Class, auto member>
-auto array(const Class& self) {
+auto view_of_member(Class& self) {
+  return view(self.*member);
+}
+
+template <typename Class, auto member>
+auto matrix(const Class& self) {
   return array_of(self.*member);
 }
 
@@ -50,9 +54,9 @@ void bind_iteration(nb::module_& module) {
       .def_ro("translation_step", &Record::translation_step,
               "Displacement of the source keypoints' centroid in this pass [units of the cloud].")
       .def_ro("seconds", &Record::seconds, "Wall time of the pass.")
-      .def_prop_ro("target_from_source", &array<Record, &Record::target_from_source>, nb::rv_policy::automatic,
+      .def_prop_ro("target_from_source", &matrix<Record, &Record::target_from_source>, nb::rv_policy::automatic,
                    "(4, 4) float64: the transformation after this pass.")
-      .def_prop_ro("correspondences", &array<Record, &Record::correspondences>,
+      .def_prop_ro("correspondences", &view_of_member<Record, &Record::correspondences>,
                    "(matches, 2) uint32: indices into Result.source_keypoints and Result.target_keypoints.")
       .def("__repr__", [](const Record& record) {
         return fmt::format("<IterationRecord {}: {} matches, energy {:.1f}, t_cd {:.2f}>", record.k, record.matches,
@@ -74,7 +78,7 @@ void bind_evidence(nb::module_& module) {
       .def_ro("quality", &Evidence::quality, "Both shares in one number, for the log odds.")
       .def_ro("rival_odds", &Evidence::rival_odds, "Odds of the other poses that were looked into, against this one.");
   nb::class_<RunnerUp>(module, "RunnerUp", "The best other pose that was looked into.")
-      .def_prop_ro("target_from_source", &array<RunnerUp, &RunnerUp::target_from_source>, nb::rv_policy::automatic,
+      .def_prop_ro("target_from_source", &matrix<RunnerUp, &RunnerUp::target_from_source>, nb::rv_policy::automatic,
                    "(4, 4) float64.")
       .def_ro("share", &RunnerUp::share,
               "Its agreeing matches in terms of the winner's, [0, 1]: near 1, the two are hard to tell apart.");
@@ -83,7 +87,7 @@ void bind_evidence(nb::module_& module) {
 void bind_precision(nb::module_& module) {
   nb::class_<FreeDirection>(module, "FreeDirection",
                             "A rigid motion of the source that hardly changes how it lies on the target.")
-      .def_prop_ro("motion", &array<FreeDirection, &FreeDirection::motion>,
+      .def_prop_ro("motion", &view_of_member<FreeDirection, &FreeDirection::motion>,
                    "(6,) float64: rotation and translation about Precision.centre, target frame, unit length with "
                    "rotations scaled by the size of the scene.")
       .def_ro("description", &FreeDirection::description, "Such as \"translation along (1.00, 0.00, 0.00)\".");
@@ -93,9 +97,9 @@ void bind_precision(nb::module_& module) {
       "[units of the cloud]; small motions are applied on the left, in the target's frame, about `centre`.")
       .def_ro("inlier_rmse", &Precision::inlier_rmse,
               "Robust RMS of the distances along the normals where the surfaces lie on each other.")
-      .def_prop_ro("centre", &array<Precision, &Precision::centre>, "(3,) float64.")
-      .def_prop_ro("information", &array<Precision, &Precision::information>, "(6, 6) float64.")
-      .def_prop_ro("covariance", &array<Precision, &Precision::covariance>,
+      .def_prop_ro("centre", &view_of_member<Precision, &Precision::centre>, "(3,) float64.")
+      .def_prop_ro("information", &view_of_member<Precision, &Precision::information>, "(6, 6) float64.")
+      .def_prop_ro("covariance", &view_of_member<Precision, &Precision::covariance>,
                    "(6, 6) float64: its inverse; 0 where not determined.")
       .def_ro("free_directions", &Precision::free_directions, "Motions that the surfaces do not fix.");
 }
@@ -115,7 +119,7 @@ void bind_result(nb::module_& module) {
           "termination", [](const Result& result) { return to_string(result.termination); },
           "Why the loop ended: converged, max_iterations, too_few_keypoints, too_few_matches or "
           "degenerate_matches.")
-      .def_prop_ro("target_from_source", &array<Result, &Result::target_from_source>, nb::rv_policy::automatic,
+      .def_prop_ro("target_from_source", &matrix<Result, &Result::target_from_source>, nb::rv_policy::automatic,
                    "(4, 4) float64, p_target = target_from_source * p_source: the best estimate, meaningless unless "
                    "has_estimate.")
       .def_ro("has_estimate", &Result::has_estimate, "False: there is no transformation to look at.")
@@ -131,9 +135,9 @@ void bind_result(nb::module_& module) {
       .def_ro("voxel_size", &Result::voxel_size, "[units of the cloud].")
       .def_ro("source", &Result::source, "Sizes of the source.")
       .def_ro("target", &Result::target, "Sizes of the target.")
-      .def_prop_ro("source_keypoints", &array<Result, &Result::source_keypoints>,
+      .def_prop_ro("source_keypoints", &view_of_member<Result, &Result::source_keypoints>,
                    "(K, 3) float64 in the source's frame, not moved.")
-      .def_prop_ro("target_keypoints", &array<Result, &Result::target_keypoints>,
+      .def_prop_ro("target_keypoints", &view_of_member<Result, &Result::target_keypoints>,
                    "(K, 3) float64 in the target's frame.")
       .def_ro("iterations", &Result::iterations, "Every pass of the loop.")
       .def_ro("timings_s", &Result::timings_s, "(stage, wall seconds), in order.")

@@ -22,7 +22,7 @@ another scene; the same arguments give the same scans. Raises ValueError.)";
 void bind_simulation(nb::module_& module) {
   nb::class_<SimulatedScan>(module, "SimulatedScan", "One scan in the scanner's own frame, its origin is the sensor.")
       .def_prop_ro(
-          "points", [](const SimulatedScan& scan) { return array_of(scan.points); }, "(N, 3) float64 [m].")
+          "points", [](SimulatedScan& scan) { return view(scan.points); }, "(N, 3) float64 [m].")
       .def_prop_ro(
           "world_from_scanner", [](const SimulatedScan& scan) { return array_of(scan.world_from_scanner); },
           nb::rv_policy::automatic, "(4, 4) float64: where the scanner stood.")

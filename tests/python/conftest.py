@@ -1,4 +1,5 @@
-"""What the tests of the Python package share. They run against the installed wheel, see python_test.py beside tests/."""
+"""What the tests of the Python package share. They run against the installed wheel, see install.py."""
+
 import os
 import subprocess
 import sys
@@ -27,8 +28,11 @@ def scans(tmp_path_factory, cpp_command):
     """A folder per scene, each with station_0.ply, station_1.ply and station_1_to_0.txt."""
     folder = tmp_path_factory.mktemp("scans")
     for scene in ("park", "indoor", "object"):
-        subprocess.run([cpp_command, "simulate", scene, "--points", "60000", "--out", folder / scene], check=True,
-                       stdout=subprocess.DEVNULL)
+        subprocess.run(
+            [cpp_command, "simulate", scene, "--points", "60000", "--out", folder / scene],
+            check=True,
+            stdout=subprocess.DEVNULL,
+        )
     return folder
 
 

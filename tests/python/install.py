@@ -3,12 +3,14 @@ user would. Both environments are kept for the next time.
 
 usage: install.py SOURCE_ROOT WORK_FOLDER CXX_COMPILER
 """
+
 import os
 import shutil
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
+
+import tomllib
 
 
 def environment(folder):
@@ -31,8 +33,16 @@ def main():
     wheels = work / "wheel"
     shutil.rmtree(wheels, ignore_errors=True)
     # The compiler of the C++ build: the answers are compared bit by bit.
-    run(pip, "wheel", source, "--no-build-isolation", "--no-deps", "--wheel-dir", wheels,
-        env=dict(os.environ, CXX=compiler))
+    run(
+        pip,
+        "wheel",
+        source,
+        "--no-build-isolation",
+        "--no-deps",
+        "--wheel-dir",
+        wheels,
+        env=dict(os.environ, CXX=compiler),
+    )
     (wheel,) = wheels.glob("igsp-*.whl")
     pip = environment(work / "environment")
     run(pip, "install", "--quiet", f"{wheel}[las,e57,test]")

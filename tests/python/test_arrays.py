@@ -1,4 +1,5 @@
 """Clouds in all the forms that Python has for them."""
+
 import subprocess
 import sys
 from types import SimpleNamespace

@@ -1,4 +1,5 @@
 """Keywords are the command's flags: one list of options."""
+
 import re
 import subprocess
 
@@ -10,16 +11,31 @@ import igsp
 
 def test_every_flag_is_a_keyword(cpp_command):
     helped = subprocess.run([cpp_command, "align", "--help"], check=True, capture_output=True, text=True).stdout
-    method = helped[helped.index("Method:"):]
+    method = helped[helped.index("Method:") :]
     flags = {flag for flag in re.findall(r"^  --([\w-]+)", method, re.MULTILINE) if not flag.startswith("no-")}
     assert {flag.replace("-", "_") for flag in flags} == set(igsp.options())
 
 
 def test_keywords_reach_the_run(pair):
-    result = igsp.align(*pair, preset="paper", voxel_size=0.4, dof=4, threads=1, refinement=False, max_iterations=7,
-                        threshold_rule="released")
-    expected = {**igsp.options(preset="paper"), "voxel_size": 0.4, "dof": 4, "threads": 1, "refinement": False,
-                "max_iterations": 7, "threshold_rule": "released"}
+    result = igsp.align(
+        *pair,
+        preset="paper",
+        voxel_size=0.4,
+        dof=4,
+        threads=1,
+        refinement=False,
+        max_iterations=7,
+        threshold_rule="released",
+    )
+    expected = {
+        **igsp.options(preset="paper"),
+        "voxel_size": 0.4,
+        "dof": 4,
+        "threads": 1,
+        "refinement": False,
+        "max_iterations": 7,
+        "threshold_rule": "released",
+    }
     assert result.options == expected
     assert igsp.align(*pair, **result.options).options == expected
 
@@ -64,4 +80,3 @@ def test_mistakes_are_named_before_anything_runs(error, words, keywords):
     for call in [igsp.align, lambda source, _, **options: igsp.extract_features(source, **options)]:
         with pytest.raises(error, match=words):
             call(cloud, cloud, **keywords)
-

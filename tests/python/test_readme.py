@@ -1,4 +1,5 @@
 """The README's Python works as printed, on a LAZ and an E57 file of two simulated scans."""
+
 import re
 import subprocess
 import sys
@@ -16,7 +17,7 @@ def test_snippets_run_in_order(tmp_path, pair):
     las.x, las.y, las.z = pair[0].T
     las.write(tmp_path / "source.laz")
     file = pye57.E57(str(tmp_path / "target.e57"), mode="w")
-    file.write_scan_raw({f"cartesian{axis}": column.copy() for axis, column in zip("XYZ", pair[1].T)})
+    file.write_scan_raw({f"cartesian{axis}": column.copy() for axis, column in zip("XYZ", pair[1].T, strict=True)})
     file.close()
 
     text = README.read_text()

@@ -1,4 +1,5 @@
 """One library: the C++ command, the command from pip and Python give the same numbers to the last bit."""
+
 import json
 import subprocess
 
@@ -16,8 +17,11 @@ RUNS = {
 
 def report_of(command, folder, options, path):
     flags = [word for name, value in options.items() for word in (f"--{name.replace('_', '-')}", str(value))]
-    run = subprocess.run([command, "align", folder / "station_1.ply", folder / "station_0.ply", *flags, "--report", path],
-                         capture_output=True, text=True)
+    run = subprocess.run(
+        [command, "align", folder / "station_1.ply", folder / "station_0.ply", *flags, "--report", path],
+        capture_output=True,
+        text=True,
+    )
     assert run.returncode in (0, 1), run.stderr
     return json.loads(path.read_text())
 
@@ -41,8 +45,10 @@ def test_commands_and_python_agree(scene, scans, tmp_path, cpp_command, pip_comm
 
 def test_simulated_scans_agree(scans):
     for number, scan in enumerate(igsp.simulate("indoor", points=60000)):
-        np.testing.assert_array_equal(scan.points.astype(np.float32),
-                                      igsp.read_points(scans / f"indoor/station_{number}.ply"))
+        np.testing.assert_array_equal(
+            scan.points.astype(np.float32), igsp.read_points(scans / f"indoor/station_{number}.ply")
+        )
     poses = [scan.world_from_scanner for scan in igsp.simulate("indoor", points=100)]
-    np.testing.assert_allclose(np.linalg.inv(poses[0]) @ poses[1], igsp.read_transformation(
-        scans / "indoor/station_1_to_0.txt"), atol=1e-12)
+    np.testing.assert_allclose(
+        np.linalg.inv(poses[0]) @ poses[1], igsp.read_transformation(scans / "indoor/station_1_to_0.txt"), atol=1e-12
+    )

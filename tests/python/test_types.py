@@ -1,4 +1,5 @@
 """The package is typed: what ships with it says what the extension is, and type checkers believe it."""
+
 import re
 import subprocess
 import sys
@@ -33,8 +34,12 @@ WRONG = {
 def mypy(program, folder):
     path = folder / "program.py"
     path.write_text(program)
-    return subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", folder / "cache", path],
-                          capture_output=True, text=True, cwd=folder)
+    return subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "--cache-dir", folder / "cache", path],
+        capture_output=True,
+        text=True,
+        cwd=folder,
+    )
 
 
 def test_a_right_program_passes(tmp_path):
@@ -45,24 +50,29 @@ def test_a_right_program_passes(tmp_path):
 def test_wrong_lines_do_not(tmp_path):
     checked = mypy("import igsp\n" + "\n".join(WRONG) + "\n", tmp_path)
     for number, words in enumerate(WRONG.values(), 2):
-        assert any(line.startswith(f"program.py:{number}: error: {words}") for line in checked.stdout.splitlines()), \
+        assert any(line.startswith(f"program.py:{number}: error: {words}") for line in checked.stdout.splitlines()), (
             checked.stdout
+        )
 
 
 def test_the_package_itself_passes(tmp_path):
-    checked = subprocess.run([sys.executable, "-m", "mypy", "--strict", "-p", "igsp"], capture_output=True, text=True,
-                             cwd=tmp_path)
+    checked = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "-p", "igsp"], capture_output=True, text=True, cwd=tmp_path
+    )
     assert checked.returncode == 0, checked.stdout
 
 
 # What every extension of nanobind is told: its functions, types and constructors are not the interpreter's own kind.
-NANOBIND = re.compile(r"is not a function$|is inconsistent, metaclass differs$|is a disjoint base at runtime|"
-                      r"\.__init__ is inconsistent, stub does not have \*args parameter")
+NANOBIND = re.compile(
+    r"is not a function$|is inconsistent, metaclass differs$|is a disjoint base at runtime|"
+    r"\.__init__ is inconsistent, stub does not have \*args parameter"
+)
 
 
 def test_the_stub_is_what_the_extension_has(tmp_path):
-    checked = subprocess.run([sys.executable, "-m", "mypy.stubtest", "igsp"], capture_output=True, text=True,
-                             cwd=tmp_path)
+    checked = subprocess.run(
+        [sys.executable, "-m", "mypy.stubtest", "igsp"], capture_output=True, text=True, cwd=tmp_path
+    )
     errors = [line for line in checked.stdout.splitlines() if line.startswith("error:")]
     assert errors and [line for line in errors if not NANOBIND.search(line)] == []
 
