@@ -63,8 +63,37 @@ def make_las(points: Array, point_format: int = 3, version: str | None = None, s
 
 def make_copc(path: Path, points: Array) -> None:
     """A COPC file of one octree node and one child: LAZ with variable chunks, whose places a hierarchy record gives."""
-    halves = [points[::2], points[1::2]]
+    halves = [np.arange(0, len(points), 2), np.arange(1, len(points), 2)]
     vlr = lazrs.LazVlr.new_for_compression(7, 0, True)
+    las = copc_points(points, vlr)
+    las.write(path)  # uncompressed, for its header
+    content = path.read_bytes()
+    start = struct.unpack_from("<I", content, 96)[0]
+    with open(path, "w+b") as file:
+        file.write(content[:start])
+        compressor = lazrs.LasZipCompressor(file, vlr)
+        compressor.compress_many(np.frombuffer(las.points.array[halves[0]].tobytes(), np.uint8))
+        compressor.finish_current_chunk()
+        compressor.compress_many(np.frombuffer(las.points.array[halves[1]].tobytes(), np.uint8))
+        compressor.done()
+        evlr_start = file.seek(0, 2)
+        file.seek(start)
+        sizes = [size for _, size in lazrs.read_chunk_table(file, vlr)]
+        root = struct.pack("<4iQ2i", 0, 0, 0, 0, start + 8, sizes[0], len(halves[0]))
+        child = struct.pack("<4iQ2i", 1, 0, 0, 0, start + 8 + sizes[0], sizes[1], len(halves[1]))
+        file.seek(evlr_start)
+        file.write(struct.pack("<H16sHQ32s", 0, b"copc", 1000, 64, b"hierarchy") + root + child)
+        file.seek(104)
+        file.write(bytes([7 | 0x80]))
+        file.seek(235)
+        file.write(struct.pack("<QI", evlr_start, 1))
+        file.seek(375 + 54)
+        cube = (*points.mean(axis=0), np.ptp(points, axis=0).max())
+        file.write(struct.pack("<5d2Q2d", *cube, 1.0, evlr_start + 60, 64, 0.0, 0.0))
+
+
+def copc_points(points: Array, vlr: Any) -> laspy.LasData:
+    """With the records that COPC has, the first of them still to be filled; red is the index of the point."""
     header = laspy.LasHeader(point_format=7, version="1.4")
     header.scales, header.offsets = np.full(3, 0.001), np.round(points.mean(axis=0))
     header.vlrs.append(laspy.VLR("copc", 1, "info", bytes(160)))
@@ -74,36 +103,7 @@ def make_copc(path: Path, points: Array) -> None:
     las = laspy.LasData(header)
     las.x, las.y, las.z = points.T
     las.red = np.arange(len(points)) % 65536
-    las.write(path)
-    content = path.read_bytes()
-    start = struct.unpack_from("<I", content, 96)[0]
-    order = np.concatenate([np.arange(0, len(points), 2), np.arange(1, len(points), 2)])
-    records = las.points.array[order]
-    with open(path, "w+b") as file:
-        file.write(content[:start])
-        compressor = lazrs.LasZipCompressor(file, vlr)
-        compressor.compress_many(np.frombuffer(records[: len(halves[0])].tobytes(), np.uint8))
-        compressor.finish_current_chunk()
-        compressor.compress_many(np.frombuffer(records[len(halves[0]) :].tobytes(), np.uint8))
-        compressor.done()
-        hierarchy_start = file.seek(0, 2) + 60
-        file.seek(start)
-        sizes = [size for _, size in lazrs.read_chunk_table(file, vlr)]
-        offsets = [start + 8, start + 8 + sizes[0]]
-        keys = [(0, 0, 0, 0), (1, 0, 0, 0)]
-        entries = b"".join(
-            struct.pack("<4iQ2i", *key, offset, size, len(half))
-            for key, offset, size, half in zip(keys, offsets, sizes, halves, strict=True)
-        )
-        file.seek(hierarchy_start - 60)
-        file.write(struct.pack("<H16sHQ32s", 0, b"copc", 1000, len(entries), b"hierarchy") + entries)
-        file.seek(104)
-        file.write(bytes([7 | 0x80]))
-        file.seek(235)
-        file.write(struct.pack("<QI", hierarchy_start - 60, 1))
-        centre, half_size = points.mean(axis=0), np.ptp(points, axis=0).max()
-        file.seek(375 + 54)
-        file.write(struct.pack("<5d2Q2d", *centre, half_size, 1.0, hierarchy_start, len(entries), 0.0, 0.0))
+    return las
 
 
 def e57_attributes(points: Array, columns: int = 50) -> dict[str, Array]:

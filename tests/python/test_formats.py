@@ -12,8 +12,19 @@ from typing import Any
 
 import numpy as np
 import pytest
-from formats_testing import e57_attributes, make_e57, make_las, motion, moved, ptx_text, random_points
+from formats_testing import (
+    UTM_ORIGIN,
+    e57_attributes,
+    make_double_e57,
+    make_e57,
+    make_las,
+    motion,
+    moved,
+    ptx_text,
+    random_points,
+)
 from igsp import formats
+from igsp.formats import _e57_file
 
 COUNT = 2000
 
@@ -90,8 +101,6 @@ def test_points_that_are_not_finite_are_left_out_and_counted(tmp_path: Path, ext
     attributes = e57_attributes(points)
     path = tmp_path / f"source.{extension}"
     if extension == "e57":
-        from formats_testing import make_double_e57
-
         make_double_e57(path, {name: attributes[name].copy() for name in ("cartesianX", "cartesianY", "cartesianZ")})
     else:
         make(path, points)
@@ -144,6 +153,33 @@ def test_rubbish(tmp_path: Path, extension: str) -> None:
         for action in actions(path, tmp_path / f"aligned.{extension}"):
             with pytest.raises(formats.FormatError, match=f"source.{extension}: (line|byte) "):
                 action()
+
+
+@each_format
+def test_damaged_bytes_are_read_or_named(tmp_path: Path, extension: str) -> None:
+    """Whatever a damaged file does to the reader, it is a FormatError: no other exception, no endless loop."""
+    content = make(tmp_path / f"source.{extension}", random_points(100)).read_bytes()
+    path = tmp_path / f"damaged.{extension}"
+    random = np.random.default_rng(5)
+    faults = 0
+    for _ in range(150):
+        damaged = bytearray(content)
+        reach = random.choice([120, 400, len(content)])
+        for position in random.integers(0, reach, random.choice([1, 2, 8])):
+            damaged[position] = random.choice([0, 255, random.integers(256)])
+        path.write_bytes(_with_checksums(damaged) if extension == "e57" else damaged)
+        for action in actions(path, tmp_path / f"aligned.{extension}"):
+            try:
+                action()
+            except formats.FormatError as error:
+                assert str(error).startswith(f"{path}: ")
+                faults += 1
+    assert faults > 30
+
+
+def _with_checksums(content: bytearray) -> bytes:
+    """Of E57: otherwise they find all damage, and nothing behind them is tested."""
+    return _e57_file.make_pages(b"".join(content[i : i + 1020] for i in range(0, len(content), 1024))).tobytes()
 
 
 @each_format
@@ -213,6 +249,22 @@ def test_matrix_that_is_no_motion(tmp_path: Path, matrix: np.ndarray, fault: str
     path = make(tmp_path / "source.pts", random_points(10))
     with pytest.raises(ValueError, match=fault):
         formats.write_aligned(path, tmp_path / "aligned.pts", matrix)
+
+
+@each_format
+def test_rounded_matrix_at_utm_coordinates(tmp_path: Path, extension: str) -> None:
+    """Six digits of a rotation are metres at the origin of UTM: the points go where the matrix as given puts them."""
+    path, output = tmp_path / f"source.{extension}", tmp_path / f"aligned.{extension}"
+    if extension == "e57":
+        make_e57(path, [(e57_attributes(random_points(50)), motion(1, tuple(UTM_ORIGIN)))])
+    elif extension == "ptx":
+        path.write_text(ptx_text([(random_points(50), motion(1, tuple(UTM_ORIGIN)))], columns=5))
+    else:
+        make(path, random_points(50) + UTM_ORIGIN)
+    matrix = np.round(motion(), 6)
+    formats.write_aligned(path, output, matrix)
+    expected = moved(matrix, formats.read_cloud(path).points)
+    np.testing.assert_allclose(formats.read_cloud(output).points, expected, rtol=0, atol=5e-4)
 
 
 @pytest.mark.parametrize(

@@ -233,6 +233,13 @@ def test_pose_that_is_no_motion(two_scans: Path) -> None:
         formats.read_cloud(two_scans)
 
 
+@pytest.mark.parametrize(("old", "new"), [(b"UTF-8", b"UTF-9"), (b"</pose>", b"</nose>")])
+def test_description_that_is_no_xml(two_scans: Path, old: bytes, new: bytes) -> None:
+    rebuild(two_scans, old, new)
+    with pytest.raises(formats.FormatError, match=r"source\.e57: byte \d+: XML section: "):
+        formats.read_metadata(two_scans)
+
+
 def test_fewer_points_than_declared(two_scans: Path) -> None:
     rebuild(two_scans, b'recordCount="3000"', b'recordCount="3500"')
     with pytest.raises(formats.FormatError, match=r"source\.e57: scan 0"):

@@ -57,7 +57,7 @@ def read_layout(path: PathLike) -> Layout:
         xml = _read_payload(path, file, start, start + xml_length)
     try:
         document = minidom.parseString(xml)
-    except ExpatError as error:
+    except (ExpatError, LookupError, ValueError) as error:  # the latter two of an encoding that there is not
         raise FormatError(path, f"byte {xml_offset}: XML section: {error}") from error
     return Layout(length, start, start + xml_length, document)
 

@@ -65,7 +65,8 @@ class _ScanReader:
             finally:
                 image.close()
         except self.libe57.E57Exception as error:
-            raise FormatError(self.path, f"scan {self.index}: {str(error).splitlines()[0]}") from error
+            reason = (str(error).splitlines() or ["cannot be read"])[0]  # the rest is for the library's authors
+            raise FormatError(self.path, f"scan {self.index}: {reason}") from error
 
     def _read(self, image: Any, capacity: int) -> Iterator[tuple[Points, NDArray[np.bool_]]]:
         coordinates = [np.empty(capacity) for _ in self.names]

@@ -26,7 +26,7 @@ def write_aligned(source: PathLike, output: PathLike, target_from_source: Points
         old = np.eye(4) if pose is None else pose
         new = target_from_source @ old if selection.apply_pose else target_from_source
         _set_pose(layout.document, element, new)
-        moved_scans[_e57_file.text_of(_e57_file.child(element, "guid"))] = new @ _motion.inverse(old)
+        moved_scans[_e57_file.text_of(_e57_file.child(element, "guid"))] = new @ np.linalg.inv(old)
     _move_images(layout.document, moved_scans, target_from_source if _moves_all(selection) else None)
     with open(source, "rb") as file, atomic_output(output) as moved:
         _copy_with_document(source, file, moved, layout)

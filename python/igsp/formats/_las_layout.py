@@ -24,6 +24,8 @@ BOUNDS = 179  # maximum, minimum of x, of y, of z
 WAVEFORM_START = 227  # u64, from LAS 1.3
 FIRST_EVLR = 235  # u64, then u32 count, u64 number of points, from LAS 1.4
 SMALLEST_HEADER = 227
+RECORD_LENGTHS = (20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67)  # bytes of a point of format 0, 1, ... without extra ones
+LARGEST_COORDINATE = 1e30  # beyond it arithmetic would overflow
 COMPRESSED = 0x80  # bit of the point format
 VLR = struct.Struct("<2x16sHH32x")  # user, record, length
 VLR_FULL = struct.Struct("<H16sHH32s")  # reserved, user, record, length, description
@@ -153,12 +155,15 @@ def _read_records(
 
 
 def _check(path: PathLike, layout: Layout) -> None:
-    if not (np.isfinite(layout.scale).all() and np.min(layout.scale) > 0 and np.isfinite(layout.offset).all()):
+    scale, offset = np.array(layout.scale), np.abs(layout.offset)
+    if not ((scale > 0).all() and (scale < LARGEST_COORDINATE).all() and (offset < LARGEST_COORDINATE).all()):
         raise FormatError(path, f"byte {SCALE_AND_OFFSET}: scale {layout.scale}, offset {layout.offset}")
-    if layout.point_format > 10:
+    if layout.point_format >= len(RECORD_LENGTHS):
         raise FormatError(path, f"byte {HEADER_SIZE + 10}: point format {layout.point_format}; LAS has 0 to 10")
+    if layout.record_length < (least := RECORD_LENGTHS[layout.point_format]):
+        fault = f"points of {layout.record_length} bytes; point format {layout.point_format} has at least {least}"
+        raise FormatError(path, f"byte {HEADER_SIZE + 11}: {fault}")
     if not layout.compressed and layout.points_end > layout.length:
         whole = (layout.length - layout.points_start) // layout.record_length
-        raise FormatError(
-            path, f"byte {layout.length}: the file ends after {whole} of {layout.point_count} points: cut short?"
-        )
+        fault = f"the file ends after {whole} of {layout.point_count} points: cut short?"
+        raise FormatError(path, f"byte {layout.length}: {fault}")

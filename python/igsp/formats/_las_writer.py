@@ -74,6 +74,8 @@ def _moved_local(records: Any, layout: Layout, motion: Points) -> Points:
 
 
 class _Copy:
+    """One file on its way into another: header, records, points, what follows, then the header as it turned out."""
+
     def __init__(
         self, path: PathLike, layout: Layout, grid: Grid, motion: Points, file: BinaryIO, moved: BinaryIO
     ) -> None:
@@ -105,8 +107,7 @@ class _Copy:
 
     def _extra_bytes(self) -> int:
         """Bytes of a record beyond those of its point format."""
-        standard = (20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67)[self.layout.point_format]
-        return self.layout.record_length - standard
+        return self.layout.record_length - _las_layout.RECORD_LENGTHS[self.layout.point_format]
 
     def _records(self, laszip: bytes | None) -> tuple[bytes, int]:
         """The variable length records, with the one that describes the compression if there is any; and their count."""

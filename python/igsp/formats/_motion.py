@@ -11,7 +11,11 @@ RIGID_TOLERANCE = 1e-3  # as for transformation files
 
 
 def as_rigid(matrix: ArrayLike, name: str) -> Points:
-    """The motion as (4, 4) float64 with its rotation made orthonormal. Throws ValueError if it is far from one."""
+    """The motion as (4, 4) float64. Throws ValueError if it is far from rigid.
+
+    Its numbers are taken as they are: making the rotation of a text file orthonormal would turn it about the origin,
+    and six digits at the coordinates of UTM are metres.
+    """
     motion = np.array(matrix, dtype=np.float64)
     if motion.shape != (4, 4):
         raise ValueError(f"{name} must have shape (4, 4), got {motion.shape}")
@@ -22,9 +26,6 @@ def as_rigid(matrix: ArrayLike, name: str) -> Points:
     left, stretch, right = np.linalg.svd(motion[:3, :3])
     if np.abs(stretch - 1).max() > RIGID_TOLERANCE or np.linalg.det(left @ right) < 0:
         raise ValueError(f"{name} must be a rigid motion: its rotation is not orthonormal with determinant 1")
-    # A rotation that already is one is kept to the bit, so that a pure translation stays one.
-    if np.abs(motion[:3, :3] @ motion[:3, :3].T - np.eye(3)).max() > 1e-15:
-        motion[:3, :3] = left @ right
     motion[3] = [0, 0, 0, 1]
     return motion
 
@@ -41,13 +42,6 @@ def turn(motion: Points, vectors: Points) -> Points:
         return np.column_stack([row[0] * x + row[1] * y + row[2] * z for row in motion[:3, :3]])
 
 
-def inverse(motion: Points) -> Points:
-    inverted = np.eye(4)
-    inverted[:3, :3] = motion[:3, :3].T
-    inverted[:3, 3] = -motion[:3, :3].T @ motion[:3, 3]
-    return inverted
-
-
 def from_quaternion(quaternion: ArrayLike, translation: ArrayLike) -> Points:
     """Of (w, x, y, z), of any length but zero, and (x, y, z)."""
     w, x, y, z = np.asarray(quaternion, dtype=np.float64) / np.linalg.norm(np.asarray(quaternion, dtype=np.float64))
@@ -62,7 +56,7 @@ def from_quaternion(quaternion: ArrayLike, translation: ArrayLike) -> Points:
 
 
 def to_quaternion(motion: Points) -> Points:
-    """(w, x, y, z) of unit length with w >= 0: the eigenvector of the greatest eigenvalue, stable for every angle."""
+    """(w, x, y, z) of unit length with w >= 0, of the nearest rotation: the eigenvector of the greatest eigenvalue."""
     r = motion[:3, :3]
     symmetric = np.array(
         [

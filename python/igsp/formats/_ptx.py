@@ -111,7 +111,7 @@ def _add_scan(metadata: Metadata, header: Header) -> None:
 
 def _moved_header(header: Header, target_from_source: Points, selection: Selection) -> list[str]:
     new = target_from_source @ header.pose if selection.apply_pose else target_from_source
-    motion = new @ _motion.inverse(header.pose)
+    motion = new @ np.linalg.inv(header.pose)
     position = _motion.apply(motion, header.frame[:1])
     axes = _motion.turn(motion, header.frame[1:])
     rows = [*position, *axes, *new.T]
