@@ -62,6 +62,17 @@ def test_a_laz_source_may_become_ply(pip_command, laz, scans, tmp_path):
     assert len(laz_points) == len(moved)
 
 
+def test_pts_keeps_what_follows_the_coordinates(pip_command, pair, scans, tmp_path):
+    rows = np.c_[pair[0], np.arange(len(pair[0])) % 2048]
+    np.savetxt(tmp_path / "source.pts", rows, fmt="%.4f %.4f %.4f %d", header=str(len(rows)), comments="")
+    run(pip_command, "align", "source.pts", scans / "park/station_0.ply", "-o", "aligned.pts", cwd=tmp_path)
+    aligned = np.loadtxt(tmp_path / "aligned.pts", skiprows=1)
+    np.testing.assert_array_equal(aligned[:, 3], rows[:, 3])
+    result = igsp.align(tmp_path / "source.pts", scans / "park/station_0.ply")
+    moved = igsp.transform_points(np.round(pair[0], 4), result.target_from_source)
+    np.testing.assert_allclose(aligned[:, :3], moved, atol=1e-3)
+
+
 def test_more_points_than_are_kept_are_streamed(pip_command, laz, scans, tmp_path):
     run(
         pip_command,
