@@ -114,6 +114,7 @@ int run(int argc, char** argv) {
   app.get_formatter()->column_width(help_column);
   Command command;
   add_align_command(app, command);
+  add_report_command(app, command);
   add_evaluate_command(app, command);
   add_benchmark_command(app, command);
   add_simulate_command(app, command);

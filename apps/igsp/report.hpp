@@ -17,9 +17,12 @@ Json to_json(const Transformation& transformation);
 /// All options by section, as the option list has them.
 Json to_json(const Options& options);
 
-/// What `igsp align --report` writes.
+/// What `igsp align --report` writes, with report_text.
 Json align_report(const Result& result, const CloudInput& source, const CloudInput& target,
                   const std::vector<std::string>& warnings);
+
+/// Indented, but an array of numbers, of any depth, stays on one line: keypoints and correspondences are many.
+std::string report_text(const Json& report);
 
 std::size_t peak_memory_bytes();
 
