@@ -35,9 +35,16 @@ fs::path find_cloud(const ReportSettings& settings, const Json& run, const std::
                               settings.run.string(), beside == path ? "" : ", nor at " + beside.string(), name));
 }
 
+void check_output(const ReportSettings& settings, std::string_view name, const fs::path& input) {
+  if (!same_file(settings.page, input)) return;
+  throw InvalidArgument(fmt::format("-o and {} are the same file, {}", name, settings.page.string()));
+}
+
 CloudInput read_cloud_of(const ReportSettings& settings, const Json& run, const std::string& name,
                          const fs::path& given, const ProgressCallback& progress) {
-  CloudInput cloud = read_cloud(find_cloud(settings, run, name, given), kept_points, "read " + name, progress);
+  const fs::path path = find_cloud(settings, run, name, given);
+  check_output(settings, name, path);
+  CloudInput cloud = read_cloud(path, kept_points, "read " + name, progress);
   const auto expected = run[name]["points"].get<std::size_t>();
   if (cloud.total != expected) {
     throw FileError(fmt::format("{}: holds {} points, the {} of {} had {}", cloud.path.string(), cloud.total, name,
@@ -47,6 +54,7 @@ CloudInput read_cloud_of(const ReportSettings& settings, const Json& run, const 
 }
 
 int run_report(const ReportSettings& settings) {
+  check_output(settings, "RUN", settings.run);
   check_writable(settings.page);
   const Json run = read_run(settings.run);
   ProgressBar bar(true);

@@ -8,8 +8,8 @@
 
 namespace igsp::cli {
 
-/// One HTML file that opens offline: the run in words, in 3-D and in plots. `run` is what align_report gives; the clouds
-/// are those of the run, thinned for the page. Throws Cancelled after an interrupt.
+/// One HTML file that opens offline: the run in words, in 3-D and in plots. `run` is what align_report gives; the
+/// clouds are those of the run, thinned for the page. Throws Cancelled after an interrupt.
 std::string report_page(const Json& run, PointView source, PointView target);
 
 // The page before and after its data, assembled from report/ and the drawing libraries when igsp is built.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 
 #include "igsp/errors.hpp"
@@ -13,103 +12,69 @@ namespace {
 
 constexpr int max_depth = 16;  // what igsp writes has 5; printing and freeing JSON takes stack for every level
 
-using Check = bool (*)(const Json&);
+// What a run must hold: an array has one pattern for all its elements, a name that ends in ? may be null.
+constexpr const char* pattern_text = R"({
+  "version": "a text", "verdict": "a verdict", "reason": "a text", "termination": "a text",
+  "target_from_source?": "a rigid motion", "confidence": "a number",
+  "overlap_source": "a number", "overlap_target": "a number", "rmse": "a number",
+  "evidence": {"mutual_matches": "a count", "agreeing_matches": "a count", "contact_share": "a number",
+               "quality": "a number", "rival_odds": "a number"},
+  "runner_up?": {"target_from_source": "a rigid motion", "share": "a number"},
+  "precision": {"centre": "a point", "covariance": "a 6x6 matrix", "free_directions": [{"description": "a text"}]},
+  "voxel_size": "a positive number",
+  "source": {"path": "a text", "points": "a count", "dropped_points": "a count", "streamed": "a boolean",
+             "voxels": "a count", "keypoints": "a count"},
+  "target": {"path": "a text", "points": "a count", "dropped_points": "a count", "streamed": "a boolean",
+             "voxels": "a count", "keypoints": "a count"},
+  "source_keypoints": ["a point"], "target_keypoints": ["a point"],
+  "iterations": [{"k": "a count", "w_fd": "a number", "w_ed": "a number", "t_cd": "a number",
+                  "candidate_edges": "a count", "matches": "a count", "energy": "a number",
+                  "rotation_step_rad": "a number", "translation_step": "a number", "seconds": "a number",
+                  "target_from_source": "a rigid motion", "correspondences": ["a pair of counts"]}],
+  "timings_s": "an object of numbers", "peak_memory_bytes": "a count", "warnings": ["a text"],
+  "options": "options by section"
+})";
 
-bool is_number(const Json& json) { return json.is_number(); }
-bool is_count(const Json& json) { return json.is_number_unsigned(); }
-bool is_boolean(const Json& json) { return json.is_boolean(); }
-bool is_text(const Json& json) { return json.is_string(); }
-bool is_texts(const Json& json) { return json.is_array() && std::ranges::all_of(json, is_text); }
-bool is_length(const Json& json) { return json.is_number() && json.get<double>() > 0.0; }
-
-bool is_row(const Json& json, std::size_t length) {
-  return json.is_array() && json.size() == length && std::ranges::all_of(json, is_number);
-}
-bool is_point(const Json& json) { return is_row(json, 3); }
-bool is_points(const Json& json) { return json.is_array() && std::ranges::all_of(json, is_point); }
+bool all_of(const Json& json, std::string_view kind);
 
 bool is_matrix(const Json& json, std::size_t size) {
   return json.is_array() && json.size() == size &&
-         std::ranges::all_of(json, [size](const Json& row) { return is_row(row, size); });
+         std::ranges::all_of(json, [size](const Json& row) { return row.size() == size && all_of(row, "a number"); });
 }
-bool is_pose(const Json& json) { return is_matrix(json, 4); }
-bool is_pose_or_null(const Json& json) { return json.is_null() || is_pose(json); }
-bool is_covariance(const Json& json) { return is_matrix(json, 6); }
 
-bool is_verdict(const Json& json) { return json == "registered" || json == "not_registered"; }
-
-bool is_runner_up(const Json& json) {
-  return json.is_null() || (json.is_object() && is_pose(json.value("target_from_source", Json())) &&
-                            is_number(json.value("share", Json())));
+bool is_rigid_motion(const Json& json) {
+  if (!is_matrix(json, 4)) return false;
+  Eigen::Matrix3d rotation;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) rotation(i, j) = json[i][j].get<double>();
+  }
+  return (rotation.transpose() * rotation).isIdentity(1e-3) && rotation.determinant() > 0.0;
 }
-bool is_free_directions(const Json& json) {
-  return json.is_array() && std::ranges::all_of(json, [](const Json& free) {
-           return free.is_object() && is_text(free.value("description", Json()));
-         });
-}
-bool is_seconds(const Json& json) { return json.is_object() && std::ranges::all_of(json, is_number); }
 
 bool is_options(const Json& json) {
-  return json.is_object() && is_count(json.value("threads", Json())) &&
-         std::ranges::all_of(json, [](const Json& section) {
-           return section.is_primitive() ||
-                  (section.is_object() && std::ranges::all_of(section, [](const Json& value) { return value.is_primitive(); }));
-         });
+  const auto plain = [](const Json& value) { return value.is_primitive(); };
+  const auto section = [&](const Json& value) { return plain(value) || std::ranges::all_of(value, plain); };
+  return json.is_object() && json.value("threads", Json()).is_number_unsigned() && std::ranges::all_of(json, section);
 }
 
-struct Entry {
-  const char* pointer;
-  Check holds;
-  const char* kind;
-};
+bool is_a(const Json& json, std::string_view kind) {
+  if (kind == "a text") return json.is_string();
+  if (kind == "a number") return json.is_number();
+  if (kind == "a count") return json.is_number_unsigned();
+  if (kind == "a boolean") return json.is_boolean();
+  if (kind == "a verdict") return json == "registered" || json == "not_registered";
+  if (kind == "a positive number") return json.is_number() && json.get<double>() > 0.0;
+  if (kind == "a point") return json.is_array() && json.size() == 3 && all_of(json, "a number");
+  if (kind == "a pair of counts") return json.is_array() && json.size() == 2 && all_of(json, "a count");
+  if (kind == "a rigid motion") return is_rigid_motion(json);
+  if (kind == "a 6x6 matrix") return is_matrix(json, 6);
+  if (kind == "an object of numbers") return json.is_object() && all_of(json, "a number");
+  return is_options(json);
+}
 
-constexpr std::array entries = {
-    Entry{"/version", is_text, "a text"},
-    Entry{"/verdict", is_verdict, "\"registered\" or \"not_registered\""},
-    Entry{"/reason", is_text, "a text"},
-    Entry{"/termination", is_text, "a text"},
-    Entry{"/target_from_source", is_pose_or_null, "a 4x4 matrix or null"},
-    Entry{"/confidence", is_number, "a number"},
-    Entry{"/overlap_source", is_number, "a number"},
-    Entry{"/overlap_target", is_number, "a number"},
-    Entry{"/rmse", is_number, "a number"},
-    Entry{"/evidence/mutual_matches", is_count, "a count"},
-    Entry{"/evidence/agreeing_matches", is_count, "a count"},
-    Entry{"/evidence/contact_share", is_number, "a number"},
-    Entry{"/evidence/quality", is_number, "a number"},
-    Entry{"/evidence/rival_odds", is_number, "a number"},
-    Entry{"/runner_up", is_runner_up, "null, or a 4x4 matrix and a share"},
-    Entry{"/precision/centre", is_point, "three numbers"},
-    Entry{"/precision/covariance", is_covariance, "a 6x6 matrix"},
-    Entry{"/precision/free_directions", is_free_directions, "an array of directions with a description"},
-    Entry{"/voxel_size", is_length, "a positive number"},
-    Entry{"/source_keypoints", is_points, "an array of points"},
-    Entry{"/target_keypoints", is_points, "an array of points"},
-    Entry{"/timings_s", is_seconds, "seconds by stage"},
-    Entry{"/peak_memory_bytes", is_count, "a count"},
-    Entry{"/warnings", is_texts, "an array of texts"},
-    Entry{"/options", is_options, "options by section"},
-};
-
-constexpr std::array cloud_entries = {
-    Entry{"/path", is_text, "a text"},          Entry{"/points", is_count, "a count"},
-    Entry{"/dropped_points", is_count, "a count"}, Entry{"/streamed", is_boolean, "true or false"},
-    Entry{"/voxels", is_count, "a count"},      Entry{"/keypoints", is_count, "a count"},
-};
-
-constexpr std::array iteration_entries = {
-    Entry{"/k", is_count, "a count"},
-    Entry{"/w_fd", is_number, "a number"},
-    Entry{"/w_ed", is_number, "a number"},
-    Entry{"/t_cd", is_number, "a number"},
-    Entry{"/candidate_edges", is_count, "a count"},
-    Entry{"/matches", is_count, "a count"},
-    Entry{"/energy", is_number, "a number"},
-    Entry{"/rotation_step_rad", is_number, "a number"},
-    Entry{"/translation_step", is_number, "a number"},
-    Entry{"/seconds", is_number, "a number"},
-    Entry{"/target_from_source", is_pose, "a 4x4 matrix"},
-};
+bool all_of(const Json& json, std::string_view kind) {
+  return std::ranges::all_of(json, [kind](const Json& element) { return is_a(element, kind); });
+}
 
 class RunCheck {
  public:
@@ -119,40 +84,38 @@ class RunCheck {
     throw FileError(fmt::format("{}: {}; is it what igsp align --report wrote?", path_.string(), what));
   }
 
-  void check(const Json& json, std::span<const Entry> expected, const std::string& where) const {
-    for (const Entry& entry : expected) {
-      const Json::json_pointer pointer(entry.pointer);
-      if (!json.contains(pointer)) fail(fmt::format("{}{} is missing", where, entry.pointer));
-      if (!entry.holds(json[pointer])) fail(fmt::format("{}{} must be {}", where, entry.pointer, entry.kind));
+  void check(const Json& json, const Json& pattern, const std::string& place) const {
+    if (pattern.is_string()) {
+      const std::string kind = pattern;
+      if (!is_a(json, kind)) fail(fmt::format("{} must be {}", place, kind));
+    } else if (pattern.is_array()) {
+      if (!json.is_array()) fail(place + " must be an array");
+      for (std::size_t i = 0; i < json.size(); ++i) check(json[i], pattern[0], fmt::format("{}/{}", place, i));
+    } else {
+      if (!json.is_object()) fail((place.empty() ? "the whole" : place) + " must be an object");
+      for (const auto& [key, entry] : pattern.items()) check_entry(json, key, entry, place);
     }
   }
 
-  void check_correspondences(const Json& run, const Json& record, const std::string& where) const {
+  void check_correspondences(const Json& run) const {
     const std::size_t sources = run["source_keypoints"].size(), targets = run["target_keypoints"].size();
-    const Json pairs = record.value("correspondences", Json());
-    const bool fine = pairs.is_array() && std::ranges::all_of(pairs, [&](const Json& pair) {
-                        return pair.is_array() && pair.size() == 2 && std::ranges::all_of(pair, is_count) &&
-                               pair[0].get<std::size_t>() < sources && pair[1].get<std::size_t>() < targets;
-                      });
-    if (!fine) fail(where + "/correspondences must be pairs of numbers of keypoints");
-  }
-
-  void check_run(const Json& run) const {
-    if (!run.is_object()) fail("not an object");
-    check(run, entries, "");
-    for (const char* cloud : {"source", "target"}) {
-      if (!run.contains(cloud)) fail(fmt::format("/{} is missing", cloud));
-      check(run[cloud], cloud_entries, fmt::format("/{}", cloud));
-    }
-    if (!run.contains("iterations") || !run["iterations"].is_array()) fail("/iterations must be an array");
     for (std::size_t i = 0; i < run["iterations"].size(); ++i) {
-      const std::string where = fmt::format("/iterations/{}", i);
-      check(run["iterations"][i], iteration_entries, where);
-      check_correspondences(run, run["iterations"][i], where);
+      for (const Json& pair : run["iterations"][i]["correspondences"]) {
+        if (pair[0].get<std::size_t>() < sources && pair[1].get<std::size_t>() < targets) continue;
+        fail(fmt::format("/iterations/{}/correspondences: there is no keypoint {}", i, pair.dump()));
+      }
     }
   }
 
  private:
+  void check_entry(const Json& json, const std::string& key, const Json& pattern, const std::string& place) const {
+    const bool optional = key.ends_with('?');
+    const std::string name = key.substr(0, key.size() - (optional ? 1 : 0));
+    const auto found = json.find(name);
+    if (found == json.end()) fail(fmt::format("{}/{} is missing", place, name));
+    if (!(optional && found->is_null())) check(*found, pattern, place + "/" + name);
+  }
+
   std::filesystem::path path_;
 };
 
@@ -168,10 +131,13 @@ Json read_run(const std::filesystem::path& path) {
   };
   try {
     const Json run = Json::parse(file, limit_depth);
-    check.check_run(run);
+    check.check(run, Json::parse(pattern_text), "");
+    check.check_correspondences(run);
     return run;
   } catch (const Json::parse_error& error) {
     check.fail(fmt::format("not JSON, at byte {}", error.byte));
+  } catch (const Json::exception& error) {  // a number too large for a double
+    check.fail(error.what());
   }
 }
 

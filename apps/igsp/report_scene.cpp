@@ -6,6 +6,7 @@
 
 #include "core/parallel.hpp"
 #include "interrupt.hpp"
+#include "spatial/local_pca.hpp"
 #include "spatial/point_grid.hpp"
 #include "spatial/scale.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 
 constexpr std::size_t max_drawn_points = 150'000;   // of a cloud
 constexpr std::size_t max_scene_bytes = 8'000'000;  // before base64: the page stays below 15 MB
-constexpr std::size_t coordinate_bytes = 6;         // three of 16 bits
+constexpr std::size_t point_bytes = 9;              // three coordinates of 16 bits, a normal of three times 8
 constexpr double reach_in_voxels = 2.5;             // as far as matches may be apart to agree
 constexpr std::uint8_t out_of_reach = 255;
 
@@ -46,13 +47,24 @@ Points thinned(const Points& points, std::size_t count) {
   return kept;
 }
 
-Json numbers(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
+Json numbers(const Eigen::Vector3d& vector) {
+  return {vector.x(), vector.y(), vector.z()};
+}
 
-Json drawn_cloud(const LocalCloud& cloud, const Points& drawn) {
+// For the shading alone: of the drawn points, three times an int8.
+std::string normals_of(const Points& drawn, double radius, int threads) {
+  const LocalPca pca = local_pca(PointGrid(drawn, radius / 2.0), radius, threads);
+  std::vector<std::uint8_t> bytes;
+  for (const Eigen::Vector3f& normal : pca.normals) {
+    for (const float part : normal) bytes.push_back(static_cast<std::uint8_t>(std::lround(127.0f * part)));
+  }
+  return base64(bytes);
+}
+
+Json drawn_cloud(const LocalCloud& cloud, const Points& drawn, double voxel_size, int threads) {
   const Eigen::Vector3d extent = cloud.bounds.max - cloud.bounds.min;
   const Eigen::Vector3d scale = extent.unaryExpr([](double length) { return length > 0.0 ? 65535.0 / length : 0.0; });
   std::vector<std::uint8_t> bytes;
-  bytes.reserve(coordinate_bytes * drawn.size());
   for (const Eigen::Vector3d& point : drawn) {
     const Eigen::Vector3d steps = (point - cloud.bounds.min).cwiseProduct(scale);
     for (const double step : steps) {
@@ -61,8 +73,13 @@ Json drawn_cloud(const LocalCloud& cloud, const Points& drawn) {
       bytes.push_back(value >> 8);
     }
   }
-  return {{"drawn", drawn.size()},       {"known", cloud.points.size()}, {"origin", numbers(cloud.origin)},
-          {"min", numbers(cloud.bounds.min)}, {"extent", numbers(extent)},    {"coordinates", base64(bytes)}};
+  return {{"drawn", drawn.size()},
+          {"known", cloud.points.size()},
+          {"origin", numbers(cloud.origin)},
+          {"min", numbers(cloud.bounds.min)},
+          {"extent", numbers(extent)},
+          {"coordinates", base64(bytes)},
+          {"normals", normals_of(drawn, voxel_size, threads)}};
 }
 
 struct Pose {
@@ -112,17 +129,17 @@ std::vector<std::uint8_t> distances(const Points& drawn, const LocalCloud& targe
 Json report_scene(const Json& run, PointView source_points, PointView target_points) {
   const LocalCloud source = localised(source_points, "source"), target = localised(target_points, "target");
   const std::vector<Pose> poses = poses_of(run);
-  const std::size_t budget = max_scene_bytes / (2 * coordinate_bytes + poses.size());
+  const std::size_t budget = max_scene_bytes / (2 * point_bytes + poses.size());
   const std::size_t count = std::max<std::size_t>(1, std::min(max_drawn_points, budget));
   const Points drawn = thinned(source.points, count);
-  const double reach = reach_in_voxels * run["voxel_size"].get<double>();
-  const PointGrid grid(target.points, reach / 2.0);
+  const double voxel_size = run["voxel_size"].get<double>(), reach = reach_in_voxels * voxel_size;
+  const PointGrid grid(target.points, reach / 6.0);
   const int threads = run["options"]["threads"].get<int>();
   const double room = source.bounds.diagonal() + target.bounds.diagonal();
 
   Json scene = {{"reach", reach}, {"reach_in_voxels", reach_in_voxels}};
-  scene["source"] = drawn_cloud(source, drawn);
-  scene["target"] = drawn_cloud(target, thinned(target.points, count));
+  scene["source"] = drawn_cloud(source, drawn, voxel_size, threads);
+  scene["target"] = drawn_cloud(target, thinned(target.points, count), voxel_size, threads);
   scene["poses"] = Json::array();
   for (const Pose& pose : poses) {
     stop_if_interrupted();

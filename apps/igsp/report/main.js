@@ -149,9 +149,9 @@ function connectTools(view) {
   byId('scale').querySelector('i').style.background = `linear-gradient(to right, ${rampColours.join(',')})`;
   byId('scale-near').textContent = '0';
   byId('scale-far').textContent = short(scene.reach) + ' units';
-  const looks = {oblique: [-0.6, -1, 0.75], top: [0, -0.0001, 1], front: [0, -1, 0.02], side: [1, 0, 0.02]};
+  byId('up').addEventListener('change', (event) => view.setUp(upAxes[event.target.value]));
   for (const button of document.querySelectorAll('[data-look]')) {
-    button.addEventListener('click', () => view.look(new THREE.Vector3(...looks[button.dataset.look])));
+    button.addEventListener('click', () => view.look(looks[button.dataset.look]));
   }
 }
 

@@ -62,7 +62,9 @@ function addLinePlot(title, xs, series, axes, onPick) {
         stepLine: {k: null},
         legend: {display: series.length > 1, labels: {color: colour('text'), boxWidth: 22, boxHeight: 1}},
       },
-      scales: {x: axis('iteration k', {type: 'linear', ticks: {color: colour('soft'), precision: 0}}), ...axes},
+      scales: {x: axis('iteration k', {
+        type: 'linear', min: xs[0], max: xs[xs.length - 1], ticks: {color: colour('soft'), precision: 0, includeBounds: false},
+      }), ...axes},
     },
   });
 }
@@ -89,7 +91,18 @@ function showPlots(onPick) {
   {y: axis('distance [units of the cloud]', {beginAtZero: true})});
   plot('Step sizes', [{name: 'rotation', values: values('rotation_step_rad').map((step) => positive(degrees(step))), colour: 'source'},
     {name: 'translation', values: values('translation_step').map(positive), colour: 'target', dash: true, side: 'right'}],
-  {y: axis('rotation [deg]', {type: 'logarithmic'}), right: right('translation [units]', {type: 'logarithmic'})});
+  {y: axis('rotation [deg]', logarithmic()), right: right('translation [units]', logarithmic())});
+}
+
+// Powers of ten; 2 and 5 between them where there are few.
+function logarithmic() {
+  const callback = (value, index, ticks) => {
+    const decades = Math.log10(ticks[ticks.length - 1].value / ticks[0].value);
+    const digit = Number(value.toExponential(6).slice(0, 8));
+    if (!(digit === 1 || (decades < 2 && (digit === 2 || digit === 5)))) return '';
+    return value < 0.001 ? value.toExponential(0) : String(Number(value.toPrecision(1)));
+  };
+  return {type: 'logarithmic', ticks: {color: colour('soft'), callback}};
 }
 
 const positive = (value) => value > 0 ? value : null;  // a logarithmic axis has no place for 0

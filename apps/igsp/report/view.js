@@ -2,11 +2,12 @@
 // The picture, drawn by three.js, whenever something changed. Coordinates are those of the target about its origin.
 
 const vertexShader = `
+  attribute vec3 normals;  // of either sign
   attribute float separation;
   uniform float pointSize;
   uniform bool byDistance;
   uniform vec3 plain, far, ramp[4];
-  uniform vec2 heights;
+  uniform mat3 turn;
   varying vec3 shade;
   void main() {
     vec4 place = modelMatrix * vec4(position, 1.0);
@@ -15,8 +16,8 @@ const vertexShader = `
     graded = mix(graded, ramp[2], clamp(s - 1.0, 0.0, 1.0));
     graded = mix(graded, ramp[3], clamp(s - 2.0, 0.0, 1.0));
     shade = !byDistance ? plain : separation > 0.999 ? far : graded;
-    float height = clamp((place.z - heights.x) / max(heights.y - heights.x, 1e-6), 0.0, 1.0);
-    shade *= mix(0.72, 1.12, height);
+    vec3 eye = normalize(cameraPosition - place.xyz);
+    shade *= mix(0.6, 1.08, abs(dot(normalize(turn * normals + 1e-6), eye)));
     gl_Position = projectionMatrix * viewMatrix * place;
     gl_PointSize = pointSize;
   }`;
@@ -24,6 +25,8 @@ const fragmentShader = `
   varying vec3 shade;
   void main() { gl_FragColor = vec4(shade, 1.0); }`;
 
+const looks = {oblique: [-0.6, -1, 0.75], top: [0, -0.0001, 1], front: [0, -1, 0.02], side: [1, 0, 0.02]};
+const upAxes = {z: [0, 0, 1], y: [0, 1, 0], '-y': [0, -1, 0]};
 const rampColours = ['#2b6cb0', '#2a9d8f', '#e9a23b', '#c8372d'];  // near to far
 
 function bytesOf(text) {
@@ -45,13 +48,7 @@ class View {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setScissorTest(true);
     this.camera = new THREE.PerspectiveCamera(35, 1, 1, 10);
-    this.camera.up.set(0, 0, 1);
-    this.controls = new THREE.OrbitControls(this.camera, canvas);
-    this.controls.enableKeys = false;  // it would take the arrow keys of the whole page
-    this.controls.addEventListener('start', () => { this.framed = false; });
-    this.controls.addEventListener('change', () => this.draw());
     this.world = new THREE.Scene();
-    this.size = 2;
     this.framed = true;  // until the reader turns the picture, it follows the clouds
     this.compare = false;
     this.source = this.addCloud(scene.source);
@@ -60,7 +57,8 @@ class View {
     this.matches = new THREE.Group();
     this.world.add(this.matches);
     this.pose = scene.poses[0];
-    this.look(new THREE.Vector3(-0.6, -1, 0.75));
+    this.direction = looks.oblique;
+    this.setUp([0, 0, 1]);
     new ResizeObserver(() => this.draw()).observe(canvas);
     canvas.addEventListener('keydown', (event) => this.turnByKey(event));
     this.recolour();
@@ -76,10 +74,11 @@ class View {
     const coordinates = new Uint16Array(bytesOf(cloud.coordinates).buffer);
     cloud.values = coordinates;
     geometry.setAttribute('position', new THREE.BufferAttribute(coordinates, 3, true));
+    geometry.setAttribute('normals', new THREE.BufferAttribute(new Int8Array(bytesOf(cloud.normals).buffer), 3, true));
     geometry.setAttribute('separation', new THREE.BufferAttribute(new Uint8Array(cloud.drawn).fill(255), 1, true));
     const uniforms = {
       pointSize: {value: 2}, byDistance: {value: false}, plain: {value: new THREE.Color()}, far: {value: new THREE.Color()},
-      ramp: {value: rampColours.map((one) => new THREE.Color(one))}, heights: {value: new THREE.Vector2(0, 1)},
+      ramp: {value: rampColours.map((one) => new THREE.Color(one))}, turn: {value: new THREE.Matrix3()},
     };
     const points = new THREE.Points(geometry, new THREE.ShaderMaterial({vertexShader, fragmentShader, uniforms}));
     points.matrixAutoUpdate = false;
@@ -97,6 +96,7 @@ class View {
   // Places the source and its matches for one pane.
   place(pose) {
     const matrix = new THREE.Matrix4().set(...pose.matrix.flat());
+    this.source.material.uniforms.turn.value.setFromMatrix4(matrix);
     this.source.matrix = matrix.multiply(this.unit(scene.source));
     this.source.geometry.setAttribute('separation', pose.separation);
     this.matches.remove(...this.matches.children);
@@ -123,43 +123,60 @@ class View {
     return pose.objects;
   }
 
-  // Centre and radius of what is seen, by ranks: a few stray points far away must not make the rest a dot.
-  extentOf(poses) {
-    const axes = [[], [], []];
+  // Some of the points that the poses show.
+  sample(poses) {
+    const points = [];
     const add = (cloud, matrix) => {
-      const place = new THREE.Vector3();
       const stride = 3 * Math.ceil(cloud.drawn / 3000);
       for (let i = 0; i < cloud.values.length; i += stride) {
-        place.fromArray(cloud.values, i).divideScalar(65535).applyMatrix4(matrix);
-        place.toArray().forEach((value, axis) => axes[axis].push(value));
+        points.push(new THREE.Vector3().fromArray(cloud.values, i).divideScalar(65535).applyMatrix4(matrix));
       }
     };
     add(scene.target, this.unit(scene.target));
     for (const pose of poses) {
       add(scene.source, new THREE.Matrix4().set(...pose.matrix.flat()).multiply(this.unit(scene.source)));
     }
-    axes.forEach((values) => values.sort((a, b) => a - b));
-    const rank = (values, share) => values[Math.round(share * (values.length - 1))];
-    const low = axes.map((values) => rank(values, 0.02)), high = axes.map((values) => rank(values, 0.98));
-    const centre = new THREE.Vector3(...low.map((value, i) => (value + high[i]) / 2));
-    const radius = Math.max(new THREE.Vector3(...low).distanceTo(new THREE.Vector3(...high)) / 2, 1e-9);
-    return {centre, radius, low: low[2], high: high[2]};
+    return points;
   }
 
+  // Goes back until nearly all points are in the picture; a few stray ones far away must not make the rest a dot.
   frame() {
-    const panes = this.compare ? [scene.poses[0], this.pose] : [this.pose];
-    const {centre, radius, low, high} = this.extentOf(panes);
-    for (const cloud of [this.source, this.target]) cloud.material.uniforms.heights.value.set(low, high);
-    const aspect = this.aspect();
-    const half = Math.min(this.camera.fov * Math.PI / 360, Math.atan(Math.tan(this.camera.fov * Math.PI / 360) * aspect));
-    const distance = 0.85 * radius / Math.sin(half);
+    const points = this.sample(this.panes());
+    const rank = (values, share) => values.sort((a, b) => a - b)[Math.round(share * (values.length - 1))];
+    const middle = (axis) => {
+      const values = points.map((point) => point[axis]);
+      return (rank(values, 0.02) + rank(values, 0.98)) / 2;
+    };
+    const centre = new THREE.Vector3(middle('x'), middle('y'), middle('z'));
+    const turn = new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 0, 1), this.camera.up);
+    const back = new THREE.Vector3(...this.direction).normalize().applyQuaternion(turn);
+    const right = new THREE.Vector3().crossVectors(this.camera.up, back).normalize();
+    const up = new THREE.Vector3().crossVectors(back, right);
+    const vertical = Math.tan(this.camera.fov * Math.PI / 360), horizontal = vertical * this.aspect();
+    const distance = rank(points.map((point) => {
+      const offset = point.sub(centre);
+      return offset.dot(back) +
+        Math.max(Math.abs(offset.dot(right)) / horizontal, Math.abs(offset.dot(up)) / vertical);
+    }), 0.98);
     this.controls.target.copy(centre);
-    this.camera.position.copy(centre).addScaledVector(this.direction, distance);
+    this.camera.position.copy(centre).addScaledVector(back, Math.max(1.06 * distance, 1e-9));
     this.controls.update();
   }
 
+  // OrbitControls takes the axis that it turns about when it is made.
+  setUp(axis) {
+    this.camera.up.set(...axis);
+    if (this.controls) this.controls.dispose();
+    this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.enableKeys = false;  // it would take the arrow keys of the whole page
+    this.controls.addEventListener('start', () => { this.framed = false; });
+    this.controls.addEventListener('change', () => this.draw());
+    this.look(this.direction);
+  }
+
+  // From a direction in which z is up.
   look(direction) {
-    this.direction = direction.normalize();
+    this.direction = direction;
     this.framed = true;
     this.frame();
     this.draw();
@@ -206,6 +223,10 @@ class View {
     this.draw();
   }
 
+  panes() {
+    return this.compare ? [scene.poses[0], this.pose] : [this.pose];
+  }
+
   aspect() {
     const canvas = this.renderer.domElement;
     return Math.max(canvas.clientWidth, 1) / (this.compare ? 2 : 1) / Math.max(canvas.clientHeight, 1);
@@ -218,7 +239,7 @@ class View {
     const distance = this.camera.position.distanceTo(this.controls.target);
     Object.assign(this.camera, {aspect: this.aspect(), near: distance / 100, far: distance * 100});
     this.camera.updateProjectionMatrix();
-    const panes = this.compare ? [scene.poses[0], this.pose] : [this.pose];
+    const panes = this.panes();
     panes.forEach((pose, i) => {
       this.place(pose);
       const pane = [i * width / panes.length, 0, width / panes.length, height];

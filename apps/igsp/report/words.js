@@ -120,8 +120,12 @@ function showRun() {
   both('dropped, not finite', (cloud) => count(cloud.dropped_points));
   both('voxels', (cloud) => count(cloud.voxels));
   both('keypoints', (cloud) => count(cloud.keypoints));
-  addRow(table, 'voxel size', short(run.voxel_size, 6) + ' units');
-  addRow(table, 'peak memory', (run.peak_memory_bytes / 1048576).toFixed(0) + ' MiB');
+  const shared = (name, value) => {
+    addRow(table, name, value);
+    table.lastChild.lastChild.colSpan = 2;
+  };
+  shared('voxel size', short(run.voxel_size, 6) + ' units');
+  shared('peak memory', (run.peak_memory_bytes / 1048576).toFixed(0) + ' MiB');
 
   const seconds = Object.entries(run.timings_s);
   const longest = Math.max(...seconds.map(([, time]) => time));
