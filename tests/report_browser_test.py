@@ -1,4 +1,5 @@
 """The report page in a real browser, headless Chromium. usage: report_browser_test.py IGSP [unittest arguments]"""
+import json
 import os
 import subprocess
 import sys
@@ -7,34 +8,31 @@ import unittest
 from pathlib import Path
 
 import numpy as np
-from selenium import webdriver
-from selenium.webdriver.chrome.options import Options
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-IGSP = os.path.abspath(sys.argv.pop(1))
+from headless_chromium import headless_chromium
 
-FLAGS = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-         "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage",
-         "--use-angle=swiftshader", "--enable-unsafe-swiftshader",  # WebGL without a graphics card
-         "--hide-scrollbars", "--window-size=1280,900"]
+IGSP = os.path.abspath(sys.argv.pop(1))
 
 # Colours of the picture: how many pixels differ from the background (the top right corner, where no label or cloud is),
 # and which pixels look like the source, the target, or grey. `from` and `to` are shares of the width.
 PIXELS = """
-const picture = document.getElementById('picture'), [from, to] = arguments;
+const [from, to, done] = arguments;
+requestAnimationFrame(() => requestAnimationFrame(() => {  // what was asked for is drawn by now
+const picture = document.getElementById('picture');
 const copy = document.createElement('canvas');
 copy.width = picture.width; copy.height = picture.height;
-const context = copy.getContext('2d');
+const context = copy.getContext('2d', {willReadFrequently: true});
 context.drawImage(picture, 0, 0);
 const left = Math.round(from * copy.width), width = Math.round(to * copy.width) - left;
 const pixels = context.getImageData(left, 0, width, copy.height).data;
 const back = context.getImageData(copy.width - 2, 2, 1, 1).data;
 let drawn = 0, red = 0, blue = 0, grey = 0, sum = 0;
 for (let i = 0; i < pixels.length; i += 4) {
-  const [r, g, b] = pixels.slice(i, i + 3);
+  const r = pixels[i], g = pixels[i + 1], b = pixels[i + 2];
   sum = (sum * 31 + r * 65536 + g * 256 + b) % 9007199254;
   if (r === back[0] && g === back[1] && b === back[2]) continue;
   ++drawn;
@@ -42,7 +40,8 @@ for (let i = 0; i < pixels.length; i += 4) {
   if (b > r + 20) ++blue;
   if (Math.max(r, g, b) - Math.min(r, g, b) < 14) ++grey;
 }
-return {drawn: drawn / (pixels.length / 4), red, blue, grey, sum};
+done({drawn: drawn / (pixels.length / 4), red, blue, grey, sum});
+}));
 """
 
 
@@ -50,19 +49,13 @@ def setUpModule():
     folder = tempfile.TemporaryDirectory()
     unittest.addModuleCleanup(folder.cleanup)
     PageTest.folder = Path(folder.name)
-    options = Options()
-    options.binary_location = "/usr/bin/chromium"
-    for flag in FLAGS + [f"--user-data-dir={folder.name}/profile"]:
-        options.add_argument(flag)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    PageTest.browser = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+    PageTest.browser = headless_chromium(PageTest.folder / "profile")
     unittest.addModuleCleanup(PageTest.browser.quit)
     make_pages(PageTest.folder)
 
 
 def make_pages(folder):
-    """park.html, registered; line.html, without an estimate; far.html, of a source far away; office.html, with a
-    runner-up."""
+    """park.html, registered; line.html, without an estimate; far.html, of a source far away; runner_up.html, with one."""
     def igsp(*arguments, codes=(0,)):
         run = subprocess.run([IGSP, *arguments], cwd=folder, capture_output=True, text=True)
         if run.returncode not in codes:
@@ -70,6 +63,13 @@ def make_pages(folder):
 
     igsp("simulate", "park", "--out", ".", "--points", "60000")
     igsp("align", "station_1.ply", "station_0.ply", "--html", "park.html", "--report", "park.json")
+    # No scene here has a rival: the park with one that lies 2 m beside it.
+    run = json.loads((folder / "park.json").read_text())
+    beside = np.array(run["target_from_source"])
+    beside[0, 3] += 2
+    run["runner_up"] = {"target_from_source": beside.tolist(), "share": 0.25}
+    (folder / "runner_up.json").write_text(json.dumps(run))
+    igsp("report", "runner_up.json", "-o", "runner_up.html")
     np.savetxt(folder / "line.xyz", np.linspace([0, 0, 0], [10, 0, 0], 500))
     igsp("align", "line.xyz", "line.xyz", "--html", "line.html", codes=(1,))
     np.savetxt(folder / "far.xyz", np.random.default_rng(0).uniform(0, 10, (5000, 3)) + [500_000, 5_000_000, 0])
@@ -93,7 +93,7 @@ class PageTest(unittest.TestCase):
         return self.browser.execute_script(text, *arguments)
 
     def pixels(self, begin=0.0, end=1.0):
-        return self.script(PIXELS, begin, end)
+        return self.browser.execute_async_script(PIXELS, begin, end)
 
     def press(self, name, *keys):
         self.script("arguments[0].focus()", self.find(name))
@@ -106,12 +106,13 @@ class PageTest(unittest.TestCase):
 class Registered(PageTest):
     def setUp(self):
         self.open("park.html")
+        self.toggle("compare")  # one picture, unless a test is about two
 
     def test_it_opens_and_asks_for_nothing_else(self):
         self.assertEqual(self.script("return performance.getEntriesByType('resource').length"), 0)
         self.assertIn("Registered: station_1.ply onto station_0.ply", self.browser.title)
         self.assertIn("Registered", self.find("verdict-word").text)
-        self.assertIn("confidence above 99.9 %", self.find("verdict-text").text)
+        self.assertRegex(self.find("verdict-text").text, r"confidence (9\d\.\d|above 99\.9) %\.")
         self.assertIn("mutual matches agree", self.find("reason").text)
 
     def test_the_picture_shows_both_clouds(self):
@@ -187,7 +188,10 @@ class Registered(PageTest):
             self.assertGreater(half["red"], 1000)
             self.assertGreater(half["blue"], 1000)
         self.press("step", Keys.HOME)
-        self.assertEqual(self.pixels(0, 0.5)["sum"], self.pixels(0.5, 1)["sum"])
+        given = [self.pixels(0, 0.5), self.pixels(0.5, 1)]
+        for name in ("red", "blue"):  # now the same twice, up to the rounding of places to pixels
+            self.assertAlmostEqual(given[0][name] / given[1][name], 1, delta=0.02)
+            self.assertGreater(abs(left[name] / right[name] - 1), 0.02)
 
     def test_the_picture_turns_with_mouse_wheel_and_keys(self):
         seen = [self.pixels()["sum"]]
@@ -200,8 +204,7 @@ class Registered(PageTest):
         self.script("arguments[0].scrollIntoView()", picture)
         ActionChains(self.browser).click_and_hold(picture).move_by_offset(80, 20).release().perform()
         changes()
-        ActionChains(self.browser).scroll_from_origin(
-            webdriver.common.actions.wheel_input.ScrollOrigin.from_element(picture), 0, -200).perform()
+        ActionChains(self.browser).scroll_from_origin(ScrollOrigin.from_element(picture), 0, -200).perform()
         changes()
         for key in [Keys.ARROW_LEFT, Keys.ARROW_UP, "+", "-" * 4]:
             self.press("picture", key)
@@ -218,7 +221,11 @@ class Registered(PageTest):
     def test_plots_are_drawn_and_a_click_moves_the_slider(self):
         drawn = self.script("""
           return [...document.querySelectorAll('.chart canvas, .chart > div > canvas')].map((canvas) => {
-            const pixels = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+            const copy = document.createElement('canvas');
+            copy.width = canvas.width; copy.height = canvas.height;
+            const context = copy.getContext('2d', {willReadFrequently: true});
+            context.drawImage(canvas, 0, 0);
+            const pixels = context.getImageData(0, 0, canvas.width, canvas.height).data;
             return pixels.filter((value, i) => i % 4 === 3 && value > 0).length;
           });""")
         self.assertEqual(len(drawn), 7)  # the histogram and six over the iterations
@@ -270,6 +277,16 @@ class Others(PageTest):
         pixels = self.pixels()
         self.assertGreater(pixels["red"], 500)
         self.assertGreater(pixels["blue"], 500)
+
+    def test_the_runner_up_is_a_pose_to_look_at(self):
+        self.open("runner_up.html")
+        final = self.pixels()
+        self.press("runner-up", Keys.SPACE)
+        self.assertIn("Runner-up: the best other pose", self.find("step-text").text)
+        self.assertNotEqual(self.pixels()["sum"], final["sum"])
+        self.press("runner-up", Keys.SPACE)
+        self.assertEqual(self.pixels(), final)
+        self.assertIn("25 %", self.find("evidence").text)
 
     def test_a_browser_without_webgl_shows_the_rest(self):
         self.addCleanup(self.browser.execute_cdp_cmd, "Page.removeScriptToEvaluateOnNewDocument",

@@ -141,8 +141,7 @@ function connectTools(view) {
     byId('before-label').hidden = !on;
     byId('stage').classList.toggle('comparing', on);
     view.compare = on;
-    if (view.framed) view.frame();
-    view.draw();
+    view.look(view.direction);
   });
   byId('point-size').addEventListener('input', (event) => view.setPointSize(event.target.valueAsNumber));
   view.setPointSize(byId('point-size').valueAsNumber);

@@ -7,6 +7,7 @@ const vertexShader = `
   uniform float pointSize;
   uniform bool byDistance;
   uniform vec3 plain, far, ramp[4];
+  uniform float lift;  // towards the eye, along the ray: decides who hides whom, moves nothing on the screen
   uniform mat3 turn;
   varying vec3 shade;
   void main() {
@@ -18,7 +19,7 @@ const vertexShader = `
     shade = !byDistance ? plain : separation > 0.999 ? far : graded;
     vec3 eye = normalize(cameraPosition - place.xyz);
     shade *= mix(0.6, 1.08, abs(dot(normalize(turn * normals + 1e-6), eye)));
-    gl_Position = projectionMatrix * viewMatrix * place;
+    gl_Position = projectionMatrix * viewMatrix * (place + vec4(lift * eye, 0.0));
     gl_PointSize = pointSize;
   }`;
 const fragmentShader = `
@@ -65,7 +66,7 @@ class View {
   }
 
   unit(cloud) {  // from 16 bits to local coordinates
-    const scale = new THREE.Matrix4().makeScale(...cloud.extent);
+    const scale = new THREE.Matrix4().makeScale(...cloud.extent.map((length) => length || 1));
     return new THREE.Matrix4().makeTranslation(...cloud.min).multiply(scale);
   }
 
@@ -78,7 +79,7 @@ class View {
     geometry.setAttribute('separation', new THREE.BufferAttribute(new Uint8Array(cloud.drawn).fill(255), 1, true));
     const uniforms = {
       pointSize: {value: 2}, byDistance: {value: false}, plain: {value: new THREE.Color()}, far: {value: new THREE.Color()},
-      ramp: {value: rampColours.map((one) => new THREE.Color(one))}, turn: {value: new THREE.Matrix3()},
+      ramp: {value: rampColours.map((one) => new THREE.Color(one))}, turn: {value: new THREE.Matrix3()}, lift: {value: 0},
     };
     const points = new THREE.Points(geometry, new THREE.ShaderMaterial({vertexShader, fragmentShader, uniforms}));
     points.matrixAutoUpdate = false;
@@ -123,8 +124,8 @@ class View {
     return pose.objects;
   }
 
-  // Some of the points that the poses show.
-  sample(poses) {
+  // Some of the points that a pose shows.
+  sample(pose) {
     const points = [];
     const add = (cloud, matrix) => {
       const stride = 3 * Math.ceil(cloud.drawn / 3000);
@@ -133,23 +134,20 @@ class View {
       }
     };
     add(scene.target, this.unit(scene.target));
-    for (const pose of poses) {
-      add(scene.source, new THREE.Matrix4().set(...pose.matrix.flat()).multiply(this.unit(scene.source)));
-    }
+    add(scene.source, new THREE.Matrix4().set(...pose.matrix.flat()).multiply(this.unit(scene.source)));
     return points;
   }
 
-  // Goes back until nearly all points are in the picture; a few stray ones far away must not make the rest a dot.
-  frame() {
-    const points = this.sample(this.panes());
+  // Where to look and from how far, so that nearly all points are in the pane; a few stray ones must not make the rest a
+  // dot.
+  fit(pose, back) {
+    const points = this.sample(pose);
     const rank = (values, share) => values.sort((a, b) => a - b)[Math.round(share * (values.length - 1))];
     const middle = (axis) => {
       const values = points.map((point) => point[axis]);
       return (rank(values, 0.02) + rank(values, 0.98)) / 2;
     };
     const centre = new THREE.Vector3(middle('x'), middle('y'), middle('z'));
-    const turn = new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 0, 1), this.camera.up);
-    const back = new THREE.Vector3(...this.direction).normalize().applyQuaternion(turn);
     const right = new THREE.Vector3().crossVectors(this.camera.up, back).normalize();
     const up = new THREE.Vector3().crossVectors(back, right);
     const vertical = Math.tan(this.camera.fov * Math.PI / 360), horizontal = vertical * this.aspect();
@@ -158,9 +156,31 @@ class View {
       return offset.dot(back) +
         Math.max(Math.abs(offset.dot(right)) / horizontal, Math.abs(offset.dot(up)) / vertical);
     }), 0.98);
+    return {centre, distance: Math.max(1.06 * distance, 1e-9)};
+  }
+
+  frame() {
+    const turn = new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 0, 1), this.camera.up);
+    const back = new THREE.Vector3(...this.direction).normalize().applyQuaternion(turn);
+    this.frames = this.panes().map((pose) => this.fit(pose, back));
+    const {centre, distance} = this.frames[this.frames.length - 1];
     this.controls.target.copy(centre);
-    this.camera.position.copy(centre).addScaledVector(back, Math.max(1.06 * distance, 1e-9));
+    this.camera.position.copy(centre).addScaledVector(back, distance);
     this.controls.update();
+  }
+
+  // The controls move the camera of the last pane; that of the other one does the same about a centre of its own.
+  cameraOf(pane) {
+    const last = this.frames[this.frames.length - 1], own = this.frames[pane];
+    const scale = own.distance / last.distance;
+    const offset = this.camera.position.clone().sub(this.controls.target).multiplyScalar(scale);
+    const target = this.controls.target.clone().sub(last.centre).multiplyScalar(scale).add(own.centre);
+    const camera = this.camera.clone();
+    camera.position.copy(target).add(offset);
+    camera.lookAt(target);
+    Object.assign(camera, {aspect: this.aspect(), near: offset.length() / 100, far: offset.length() * 100});
+    camera.updateProjectionMatrix();
+    return camera;
   }
 
   // OrbitControls takes the axis that it turns about when it is made.
@@ -214,6 +234,7 @@ class View {
 
   colourByDistance(on) {
     this.source.material.uniforms.byDistance.value = on;
+    this.source.material.uniforms.lift.value = on ? scene.reach / 5 : 0;  // its colours before the grey of the target
     this.target.material.uniforms.byDistance.value = on;  // it has no distances: all of it grey
     this.draw();
   }
@@ -232,20 +253,27 @@ class View {
     return Math.max(canvas.clientWidth, 1) / (this.compare ? 2 : 1) / Math.max(canvas.clientHeight, 1);
   }
 
+  // Soon, and once for all that changed until then.
   draw() {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.drawNow();
+    });
+  }
+
+  drawNow() {
     const {clientWidth: width, clientHeight: height} = this.renderer.domElement;
     if (width === 0 || !this.pose.separation) return;
     this.renderer.setSize(width, height, false);
-    const distance = this.camera.position.distanceTo(this.controls.target);
-    Object.assign(this.camera, {aspect: this.aspect(), near: distance / 100, far: distance * 100});
-    this.camera.updateProjectionMatrix();
     const panes = this.panes();
     panes.forEach((pose, i) => {
       this.place(pose);
       const pane = [i * width / panes.length, 0, width / panes.length, height];
       this.renderer.setViewport(...pane);
       this.renderer.setScissor(...pane);
-      this.renderer.render(this.world, this.camera);
+      this.renderer.render(this.world, this.cameraOf(i));
     });
   }
 }

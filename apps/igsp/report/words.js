@@ -108,7 +108,7 @@ function showPrecision() {
   row('rotation about [deg]', deviation.slice(0, 3).map(degrees));
   row('translation along [units]', deviation.slice(3));
   place.append(table, make('p', 'From the residuals of the fine registration, as if they were independent: a lower bound.', 'note'));
-  if (free.length === 0) place.append(make('p', 'No direction is free: the surfaces fix the pose.'));
+  if (free.length === 0) place.append(make('p', 'No direction is free at this pose.'));
 }
 
 function showRun() {
