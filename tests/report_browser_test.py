@@ -20,8 +20,7 @@ IGSP = os.path.abspath(sys.argv.pop(1))
 # Colours of the picture: how many pixels differ from the background (the top right corner, where no label or cloud is),
 # and which pixels look like the source, the target, or grey. `from` and `to` are shares of the width.
 PIXELS = """
-const [from, to, done] = arguments;
-requestAnimationFrame(() => requestAnimationFrame(() => {  // what was asked for is drawn by now
+const [from, to] = arguments;
 const picture = document.getElementById('picture');
 const copy = document.createElement('canvas');
 copy.width = picture.width; copy.height = picture.height;
@@ -40,8 +39,7 @@ for (let i = 0; i < pixels.length; i += 4) {
   if (b > r + 20) ++blue;
   if (Math.max(r, g, b) - Math.min(r, g, b) < 14) ++grey;
 }
-done({drawn: drawn / (pixels.length / 4), red, blue, grey, sum});
-}));
+return {drawn: drawn / (pixels.length / 4), red, blue, grey, sum};
 """
 
 
@@ -93,7 +91,13 @@ class PageTest(unittest.TestCase):
         return self.browser.execute_script(text, *arguments)
 
     def pixels(self, begin=0.0, end=1.0):
-        return self.browser.execute_async_script(PIXELS, begin, end)
+        self.wait_for_frames()
+        return self.script(PIXELS, begin, end)
+
+    def wait_for_frames(self):
+        """Events are handled, and what changed is drawn, in the next frame or the one after it."""
+        self.browser.execute_async_script(
+            "const done = arguments[0], next = requestAnimationFrame; next(() => next(() => next(done)))")
 
     def press(self, name, *keys):
         self.script("arguments[0].focus()", self.find(name))
@@ -235,6 +239,7 @@ class Registered(PageTest):
         canvas = self.browser.find_element(By.CSS_SELECTOR, "#charts canvas")
         self.script("arguments[0].scrollIntoView({block: 'center'})", canvas)
         ActionChains(self.browser).move_to_element(canvas).click().perform()
+        self.wait_for_frames()
         step, last = (int(self.find("step").get_attribute(name)) for name in ("value", "max"))
         self.assertTrue(1 < step < last - 1, step)
 
@@ -247,12 +252,14 @@ class Registered(PageTest):
         self.addCleanup(self.browser.set_window_size, 1280, 900)
         for width in (1280, 1024, 520):
             self.browser.set_window_size(width, 800)
+            self.wait_for_frames()
             self.assertLessEqual(*self.script("return [document.documentElement.scrollWidth, innerWidth]"))
 
     def test_dark_and_light(self):
         def scheme(name):
             self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia",
                                          {"features": [{"name": "prefers-color-scheme", "value": name}]})
+            self.wait_for_frames()  # the change is an event, too
             return self.script("return getComputedStyle(document.body).backgroundColor"), self.pixels()["sum"]
 
         self.addCleanup(self.browser.execute_cdp_cmd, "Emulation.setEmulatedMedia", {"features": []})
