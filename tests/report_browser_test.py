@@ -141,6 +141,25 @@ class Registered(PageTest):
         self.press("step", Keys.END)
         self.assertEqual(self.pixels(), final)
 
+    def test_the_source_moves_and_the_target_stays(self):
+        self.toggle("show-matches")
+        self.press("picture", Keys.ARROW_LEFT)  # from now on the camera stays where it is
+
+        def at_both_ends():
+            seen = []
+            for key in (Keys.HOME, Keys.END):
+                self.press("step", key)
+                seen.append(self.pixels()["sum"])
+            return seen
+
+        self.toggle("show-target")
+        given, final = at_both_ends()
+        self.assertNotEqual(given, final)
+        self.toggle("show-target")
+        self.toggle("show-source")
+        given, final = at_both_ends()
+        self.assertEqual(given, final)
+
     def test_play_goes_from_the_start_to_the_end(self):
         self.script("window.seen = []; document.getElementById('step-text').textContent = '';"
                     "new MutationObserver(() => seen.push(document.getElementById('step').value))"
