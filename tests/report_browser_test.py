@@ -17,8 +17,9 @@ from headless_chromium import headless_chromium
 
 IGSP = os.path.abspath(sys.argv.pop(1))
 
-# Colours of the picture: how many pixels differ from the background (the top right corner, where no label or cloud is),
-# and which pixels look like the source, the target, or grey. `from` and `to` are shares of the width.
+# What the picture holds: which share of its pixels differs from the background (the top right corner, where no label or
+# cloud is), how many look like the source, the target, or grey, and checksums of all colours and of what is drawn where.
+# `from` and `to` are shares of the width.
 PIXELS = """
 const [from, to] = arguments;
 const picture = document.getElementById('picture');
@@ -29,17 +30,18 @@ context.drawImage(picture, 0, 0);
 const left = Math.round(from * copy.width), width = Math.round(to * copy.width) - left;
 const pixels = context.getImageData(left, 0, width, copy.height).data;
 const back = context.getImageData(copy.width - 2, 2, 1, 1).data;
-let drawn = 0, red = 0, blue = 0, grey = 0, sum = 0;
+let drawn = 0, red = 0, blue = 0, grey = 0, sum = 0, shape = 0;
 for (let i = 0; i < pixels.length; i += 4) {
   const r = pixels[i], g = pixels[i + 1], b = pixels[i + 2];
   sum = (sum * 31 + r * 65536 + g * 256 + b) % 9007199254;
   if (r === back[0] && g === back[1] && b === back[2]) continue;
   ++drawn;
+  shape = (shape * 31 + i) % 9007199254;
   if (r > b + 40 && r > g + 40) ++red;
   if (b > r + 20) ++blue;
   if (Math.max(r, g, b) - Math.min(r, g, b) < 14) ++grey;
 }
-return {drawn: drawn / (pixels.length / 4), red, blue, grey, sum};
+return {drawn: drawn / (pixels.length / 4), red, blue, grey, sum, shape};
 """
 
 
@@ -149,7 +151,7 @@ class Registered(PageTest):
             seen = []
             for key in (Keys.HOME, Keys.END):
                 self.press("step", key)
-                seen.append(self.pixels()["sum"])
+                seen.append(self.pixels()["shape"])  # the shading turns with the source
             return seen
 
         self.toggle("show-target")
