@@ -20,6 +20,7 @@
 #include "output_file.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
+#include "report_page.hpp"
 
 namespace igsp::cli {
 namespace {
@@ -28,8 +29,8 @@ namespace fs = std::filesystem;
 
 struct AlignSettings {
   fs::path source, target;
-  fs::path aligned, transformation, report;  // empty: not wanted
-  fs::path initial;                          // empty: no guess
+  fs::path aligned, transformation, report, html;  // empty: not wanted
+  fs::path initial;                                // empty: no guess
   std::int64_t max_points = 20'000'000;
   bool force = false, quiet = false, verbose = false;
   std::shared_ptr<OptionFlags> option_flags;
@@ -44,11 +45,6 @@ double cpu_now_s() {
 
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-bool same_file(const fs::path& a, const fs::path& b) {
-  std::error_code ignored;
-  return fs::weakly_canonical(fs::absolute(a), ignored) == fs::weakly_canonical(fs::absolute(b), ignored);
 }
 
 // A survey format is written only from a source of the same format: it keeps what belongs to the points.
@@ -70,7 +66,8 @@ void check_outputs(const AlignSettings& settings) {
                                                                     {"--initial", settings.initial},
                                                                     {"-o", settings.aligned},
                                                                     {"--transform", settings.transformation},
-                                                                    {"--report", settings.report}};
+                                                                    {"--report", settings.report},
+                                                                    {"--html", settings.html}};
   for (std::size_t i = 3; i < files.size(); ++i) {  // after the inputs
     const auto& [name, path] = files[i];
     if (path.empty()) continue;
@@ -93,9 +90,9 @@ std::vector<std::string> warnings_about(const CloudInput& source, const CloudInp
   constexpr double suspicious = 100.0;
   const double power = std::log10(source.bounds.diagonal() / target.bounds.diagonal());
   if (std::abs(power) >= std::log10(suspicious)) {
-    warnings.push_back(fmt::format(
-        "clouds in different units? Extents differ by a factor of about {:g}: source {:.4g}, target {:.4g}",
-        std::pow(10.0, std::round(std::abs(power))), source.bounds.diagonal(), target.bounds.diagonal()));
+    warnings.push_back(
+        fmt::format("clouds in different units? Extents differ by a factor of about {:g}: source {:.4g}, target {:.4g}",
+                    std::pow(10.0, std::round(std::abs(power))), source.bounds.diagonal(), target.bounds.diagonal()));
   }
   return warnings;
 }
@@ -127,9 +124,11 @@ void write_aligned(const AlignSettings& settings, Points points, const Result& r
                {.format = format_of(settings.aligned), .single_precision = floats_suffice(points, result.voxel_size)});
 }
 
-// The report says what happened in any case; the other files exist only for an answer to rely on, unless forced.
-void write_outputs(const AlignSettings& settings, const Result& result, const Json& report, CloudInput& source) {
-  if (!settings.report.empty()) write_text(settings.report, report.dump(2) + "\n");
+// The reports say what happened in any case; the other files exist only for an answer to rely on, unless forced.
+void write_outputs(const AlignSettings& settings, const Result& result, const Json& report, CloudInput& source,
+                   const CloudInput& target) {
+  if (!settings.report.empty()) write_text(settings.report, report_text(report));
+  if (!settings.html.empty()) write_text(settings.html, report_page(report, source.points, target.points));
   const bool wanted = !settings.aligned.empty() || !settings.transformation.empty();
   if (!wanted) return;
   if (!result.has_estimate || !(result.registered || settings.force)) {
@@ -180,7 +179,7 @@ int run_align(const AlignSettings& settings) {
   }
   std::cout << answer_text(result, options.scale.voxel_size > 0.0, now_s() - start);
   if (settings.verbose) std::cout << details_text(result);
-  write_outputs(settings, result, align_report(result, source, target, cpu_seconds, warnings), source);
+  write_outputs(settings, result, align_report(result, source, target, cpu_seconds, warnings), source, target);
   return result.registered ? exit_registered : exit_not_registered;
 }
 
@@ -206,12 +205,15 @@ void add_align_command(CLI::App& app, Command& command) {
   align->add_option("--transform", settings->transformation, "write target_from_source, 4x4 text")->type_name("FILE");
   align->add_option("--report", settings->report, "write the whole answer as JSON, whatever the verdict")
       ->type_name("FILE");
+  align->add_option("--html", settings->html, "write a page to look at: clouds, iterations, evidence (igsp report)")
+      ->type_name("FILE");
   align->add_option("--initial", settings->initial, "start from this target_from_source, 4x4 text, instead of a search")
       ->type_name("FILE");
   align->add_flag("--force", settings->force, "write -o and --transform also for an estimate that is not registered");
-  align->add_option("--max-points", settings->max_points,
-                    wrapped("a cloud with more points is streamed through the voxel filter instead of kept whole; "
-                            "default 20000000"))
+  align
+      ->add_option("--max-points", settings->max_points,
+                   wrapped("a cloud with more points is streamed through the voxel filter instead of kept whole; "
+                           "default 20000000"))
       ->type_name("INTEGER");
   CLI::Option* quiet = align->add_flag("--quiet", settings->quiet, "no progress and no warnings, only the answer");
   align->add_flag("--verbose", settings->verbose, "also a line per iteration and per stage")->excludes(quiet);
