@@ -115,7 +115,7 @@ class Zsh(ShellTest, unittest.TestCase):
         listing = self.read_until(terminal, "FINISHED")
         os.close(terminal)
         os.waitpid(process, 0)
-        rows = [row.strip() for row in listing.split("\n")[1:] if line not in row and "\x1b" not in row]
+        rows = [row.strip() for row in listing.split("\n")[1:] if not row.startswith(line) and "\x1b" not in row]
         entries = [entry for row in rows for entry in re.split(r"\s{2,}", re.sub(r"\s+-- .*", "", row))]
         return {entry for entry in entries if entry}
 
