@@ -45,11 +45,13 @@ function stepText(pose) {
 }
 
 function thinningText() {
-  const part = (name, cloud, all) => cloud.drawn < all ? `${count(cloud.drawn)} of ${count(all)} points of the ${name}`
-    : `all ${count(all)} points of the ${name}`;
-  const thinned = scene.source.drawn < run.source.points || scene.target.drawn < run.target.points;
-  return `Drawn: ${part('source', scene.source, run.source.points)} and ${part('target', scene.target, run.target.points)}` +
-    (thinned ? ', thinned for display. ' : '. ') +
+  const part = (name) => {
+    const {drawn} = scene[name], all = run[name].points;
+    const kind = run[name].streamed ? 'centroids of small voxels instead of the' : 'of';
+    return drawn < all ? `${count(drawn)} ${kind} ${count(all)} points of the ${name}` : `all ${count(all)} points of the ${name}`;
+  };
+  const thinned = ['source', 'target'].some((name) => scene[name].drawn < run[name].points);
+  return `Drawn: ${part('source')} and ${part('target')}${thinned ? ', thinned for display' : ''}. ` +
     `Distances are from each drawn source point to the nearest of ${count(scene.target.known)} target points. ` +
     'Drag to turn, wheel to zoom, right button to move; or Tab to the picture and use the arrow keys, plus and minus.';
 }

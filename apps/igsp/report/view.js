@@ -265,7 +265,7 @@ class View {
 
   drawNow() {
     const {clientWidth: width, clientHeight: height} = this.renderer.domElement;
-    if (width === 0 || !this.pose.separation) return;
+    if (width === 0) return;
     this.renderer.setSize(width, height, false);
     const panes = this.panes();
     panes.forEach((pose, i) => {

@@ -7,7 +7,7 @@ const scene = data.scene;
 
 const byId = (id) => document.getElementById(id);
 const percent = (share) => (100 * share).toFixed(share > 0 && share < 0.1 ? 1 : 0) + ' %';
-const short = (value, digits = 3) => value === 0 ? '0' : String(Number(value.toPrecision(digits)));
+const short = (value, digits = 3) => value === null ? 'not a number' : String(Number(value.toPrecision(digits)));
 const count = (value) => value.toLocaleString('en');
 const voxels = (value) => short(value) + ' voxels';
 const degrees = (radians) => radians * 180 / Math.PI;
