@@ -55,7 +55,8 @@ def setUpModule():
 
 
 def make_pages(folder):
-    """park.html, registered; line.html, without an estimate; far.html, of a source far away; runner_up.html, with one."""
+    """park.html, registered; streamed.html, of clouds too large to keep; runner_up.html, with one; line.html, without an
+    estimate; far.html, of a source far away."""
     def igsp(*arguments, codes=(0,)):
         run = subprocess.run([IGSP, *arguments], cwd=folder, capture_output=True, text=True)
         if run.returncode not in codes:
@@ -63,6 +64,7 @@ def make_pages(folder):
 
     igsp("simulate", "park", "--out", ".", "--points", "60000")
     igsp("align", "station_1.ply", "station_0.ply", "--html", "park.html", "--report", "park.json")
+    igsp("align", "station_1.ply", "station_0.ply", "--html", "streamed.html", "--max-points", "20000")
     # No scene here has a rival: the park with one that lies 2 m beside it.
     run = json.loads((folder / "park.json").read_text())
     beside = np.array(run["target_from_source"])
@@ -305,6 +307,11 @@ class Others(PageTest):
         pixels = self.pixels()
         self.assertGreater(pixels["red"], 500)
         self.assertGreater(pixels["blue"], 500)
+
+    def test_centroids_are_not_called_points(self):
+        self.open("streamed.html")
+        self.assertRegex(self.find("picture-note").text, "Drawn: [\\d,]+ centroids of small voxels instead of the 5[\\d,]+ "
+                         "points of the source and .*, thinned for display")
 
     def test_the_runner_up_is_a_pose_to_look_at(self):
         self.open("runner_up.html")

@@ -69,6 +69,7 @@ function start() {
   slider.max = steps.length - 1;
   slider.value = steps.length - 1;
   slider.disabled = byId('play').disabled = steps.length === 1;
+  if (steps.length === 1) byId('compare').checked = false;
 
   let view = null;
   try {

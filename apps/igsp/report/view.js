@@ -139,24 +139,27 @@ class View {
   }
 
   // Where to look and from how far, so that nearly all points are in the pane; a few stray ones must not make the rest a
-  // dot.
+  // dot. The middle of the points is not the middle of their picture, since what is near is large: hence the repetition.
   fit(pose, back) {
     const points = this.sample(pose);
-    const rank = (values, share) => values.sort((a, b) => a - b)[Math.round(share * (values.length - 1))];
-    const middle = (axis) => {
-      const values = points.map((point) => point[axis]);
-      return (rank(values, 0.02) + rank(values, 0.98)) / 2;
-    };
-    const centre = new THREE.Vector3(middle('x'), middle('y'), middle('z'));
     const right = new THREE.Vector3().crossVectors(this.camera.up, back).normalize();
     const up = new THREE.Vector3().crossVectors(back, right);
     const vertical = Math.tan(this.camera.fov * Math.PI / 360), horizontal = vertical * this.aspect();
-    const distance = rank(points.map((point) => {
-      const offset = point.sub(centre);
-      return offset.dot(back) +
-        Math.max(Math.abs(offset.dot(right)) / horizontal, Math.abs(offset.dot(up)) / vertical);
-    }), 0.98);
-    return {centre, distance: Math.max(1.06 * distance, 1e-9)};
+    const rank = (values, share) => values.sort((a, b) => a - b)[Math.round(share * (values.length - 1))];
+    const middle = (values) => (rank(values, 0.02) + rank(values, 0.98)) / 2;
+    const centre = new THREE.Vector3(...['x', 'y', 'z'].map((axis) => middle(points.map((point) => point[axis]))));
+    let distance = 0;
+    for (let pass = 0; pass < 4; ++pass) {
+      const offsets = points.map((point) => point.clone().sub(centre));
+      distance = Math.max(1e-9, 1.12 * rank(offsets.map((offset) => offset.dot(back) +
+        Math.max(Math.abs(offset.dot(right)) / horizontal, Math.abs(offset.dot(up)) / vertical)), 0.98));
+      const seen = offsets.filter((offset) => offset.dot(back) < 0.9 * distance);
+      for (const side of [right, up]) {
+        const shift = middle(seen.map((offset) => offset.dot(side) / (distance - offset.dot(back))));
+        if (pass < 3) centre.addScaledVector(side, shift * distance);
+      }
+    }
+    return {centre, distance};
   }
 
   frame() {
