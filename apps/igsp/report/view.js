@@ -78,8 +78,9 @@ class View {
     geometry.setAttribute('normals', new THREE.BufferAttribute(new Int8Array(bytesOf(cloud.normals).buffer), 3, true));
     geometry.setAttribute('separation', new THREE.BufferAttribute(new Uint8Array(cloud.drawn).fill(255), 1, true));
     const uniforms = {
-      pointSize: {value: 2}, byDistance: {value: false}, plain: {value: new THREE.Color()}, far: {value: new THREE.Color()},
-      ramp: {value: rampColours.map((one) => new THREE.Color(one))}, turn: {value: new THREE.Matrix3()}, lift: {value: 0},
+      pointSize: {value: 2}, byDistance: {value: false}, lift: {value: 0}, turn: {value: new THREE.Matrix3()},
+      plain: {value: new THREE.Color()}, far: {value: new THREE.Color()},
+      ramp: {value: rampColours.map((one) => new THREE.Color(one))},
     };
     const points = new THREE.Points(geometry, new THREE.ShaderMaterial({vertexShader, fragmentShader, uniforms}));
     points.matrixAutoUpdate = false;
@@ -118,8 +119,9 @@ class View {
     geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(places), 3));
     geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(colours), 3));
     const shared = {vertexColors: THREE.VertexColors, transparent: true};
-    pose.objects = [new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({...shared, opacity: 0.75})),
-      new THREE.Points(geometry, new THREE.PointsMaterial({...shared, size: 5, sizeAttenuation: false, opacity: 0.95}))];
+    const lines = new THREE.LineBasicMaterial({...shared, opacity: 0.75});
+    const ends = new THREE.PointsMaterial({...shared, size: 5, sizeAttenuation: false, opacity: 0.95});
+    pose.objects = [new THREE.LineSegments(geometry, lines), new THREE.Points(geometry, ends)];
     for (const object of pose.objects) object.frustumCulled = false;
     return pose.objects;
   }
@@ -138,8 +140,8 @@ class View {
     return points;
   }
 
-  // Where to look and from how far, so that nearly all points are in the pane; a few stray ones must not make the rest a
-  // dot. The middle of the points is not the middle of their picture, since what is near is large: hence the repetition.
+  // Where to look and from how far, so that nearly all points are in the pane; a few stray ones must not make the rest
+  // a dot. The middle of the points is not the middle of their picture, since what is near is large: hence the passes.
   fit(pose, back) {
     const points = this.sample(pose);
     const right = new THREE.Vector3().crossVectors(this.camera.up, back).normalize();
@@ -206,7 +208,9 @@ class View {
   }
 
   turnByKey(event) {
-    const turns = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1], '+': 0.85, '=': 0.85, '-': 1 / 0.85};
+    const turns = {
+      ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1], '+': 0.85, '=': 0.85, '-': 1 / 0.85,
+    };
     const turn = turns[event.key];
     if (turn === undefined) return;
     event.preventDefault();
@@ -243,7 +247,8 @@ class View {
   }
 
   setPointSize(size) {
-    for (const cloud of [this.source, this.target]) cloud.material.uniforms.pointSize.value = size * this.renderer.getPixelRatio();
+    const pixels = size * this.renderer.getPixelRatio();
+    for (const cloud of [this.source, this.target]) cloud.material.uniforms.pointSize.value = pixels;
     this.draw();
   }
 
