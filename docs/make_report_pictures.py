@@ -19,8 +19,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         subprocess.run([igsp, "simulate", "object", "--out", "."], check=True, cwd=folder, capture_output=True)
-        subprocess.run([igsp, "align", "station_1.ply", "station_0.ply", "--html", "report.html"], check=True, cwd=folder,
-                       capture_output=True)
+        subprocess.run([igsp, "align", "station_1.ply", "station_0.ply", "--html", "report.html"], check=True,
+                       cwd=folder, capture_output=True)
         browser = headless_chromium(folder / "profile", 1180, 960)
         browser.get(f"file://{folder / 'report.html'}")
         browser.execute_script("document.getElementById('by-distance').click()")

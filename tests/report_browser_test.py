@@ -18,8 +18,8 @@ from headless_chromium import headless_chromium
 IGSP = os.path.abspath(sys.argv.pop(1))
 
 # What the picture holds: which share of its pixels differs from the background (the top right corner, where no label or
-# cloud is), how many look like the source, the target, or grey, and checksums of all colours and of what is drawn where.
-# `from` and `to` are shares of the width.
+# cloud is), how many look like the source, the target, or grey, and checksums of all colours and of what is drawn
+# where. `from` and `to` are shares of the width.
 PIXELS = """
 const [from, to] = arguments;
 const picture = document.getElementById('picture');
@@ -44,6 +44,13 @@ for (let i = 0; i < pixels.length; i += 4) {
 return {drawn: drawn / (pixels.length / 4), red, blue, grey, sum, shape};
 """
 
+WITHOUT_WEBGL = """
+const original = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function(kind, ...more) {
+  return /webgl/.test(kind) ? null : original.call(this, kind, ...more);
+};
+"""
+
 
 def setUpModule():
     folder = tempfile.TemporaryDirectory()
@@ -55,7 +62,8 @@ def setUpModule():
 
 
 def make_pages(folder):
-    """park.html, registered; line.html, without an estimate; far.html, of a source far away; runner_up.html, with one."""
+    """park.html, registered; streamed.html, of clouds too large to keep; runner_up.html, with one; line.html,
+    without an estimate; far.html, of a source far away."""
     def igsp(*arguments, codes=(0,)):
         run = subprocess.run([IGSP, *arguments], cwd=folder, capture_output=True, text=True)
         if run.returncode not in codes:
@@ -63,6 +71,7 @@ def make_pages(folder):
 
     igsp("simulate", "park", "--out", ".", "--points", "60000")
     igsp("align", "station_1.ply", "station_0.ply", "--html", "park.html", "--report", "park.json")
+    igsp("align", "station_1.ply", "station_0.ply", "--html", "streamed.html", "--max-points", "20000")
     # No scene here has a rival: the park with one that lies 2 m beside it.
     run = json.loads((folder / "park.json").read_text())
     beside = np.array(run["target_from_source"])
@@ -83,8 +92,8 @@ class PageTest(unittest.TestCase):
 
     def check_console(self):
         """Nothing but Chromium's own remarks on the speed of reading pixels back."""
-        said = [entry for entry in self.browser.get_log("browser") if "GPU stall due to ReadPixels" not in entry["message"]]
-        self.assertEqual(said, [])
+        said = [entry["message"] for entry in self.browser.get_log("browser")]
+        self.assertEqual([message for message in said if "GPU stall due to ReadPixels" not in message], [])
 
     def find(self, name):
         return self.browser.find_element(By.ID, name)
@@ -306,6 +315,11 @@ class Others(PageTest):
         self.assertGreater(pixels["red"], 500)
         self.assertGreater(pixels["blue"], 500)
 
+    def test_centroids_are_not_called_points(self):
+        self.open("streamed.html")
+        self.assertRegex(self.find("picture-note").text, r"Drawn: [\d,]+ centroids of small voxels instead of the "
+                         r"[\d,]+ points of the source and .*, thinned for display")
+
     def test_the_runner_up_is_a_pose_to_look_at(self):
         self.open("runner_up.html")
         final = self.pixels()
@@ -317,11 +331,8 @@ class Others(PageTest):
         self.assertIn("25 %", self.find("evidence").text)
 
     def test_a_browser_without_webgl_shows_the_rest(self):
-        self.addCleanup(self.browser.execute_cdp_cmd, "Page.removeScriptToEvaluateOnNewDocument",
-                        self.browser.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {
-                            "source": "HTMLCanvasElement.prototype.getContext = ((original) => function(kind, ...more) {"
-                                      "return /webgl/.test(kind) ? null : original.call(this, kind, ...more); })"
-                                      "(HTMLCanvasElement.prototype.getContext)"}))
+        script = self.browser.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": WITHOUT_WEBGL})
+        self.addCleanup(self.browser.execute_cdp_cmd, "Page.removeScriptToEvaluateOnNewDocument", script)
         self.browser.get(f"file://{self.folder / 'park.html'}")
         self.assertTrue(self.find("no-picture").is_displayed())
         self.press("step", Keys.HOME)

@@ -14,9 +14,7 @@ inline bool same_file(const std::filesystem::path& a, const std::filesystem::pat
 }
 
 /// Throws FileError unless a file can be created at `path`: asked before a long run, not after it.
-inline void check_writable(const std::filesystem::path& path) {
-  io::AtomicFile{path};
-}
+inline void check_writable(const std::filesystem::path& path) { io::AtomicFile{path}; }
 
 /// Whole or not at all. Throws FileError.
 inline void write_text(const std::filesystem::path& path, std::string_view text) {

@@ -15,8 +15,8 @@ Json to_json(const OptionValue& value) {
 }
 
 Json to_json(const CloudInput& input, const CloudSummary& summary) {
-  return {{"path", input.path.string()}, {"points", input.total},    {"dropped_points", input.dropped},
-          {"streamed", !input.whole()},  {"voxels", summary.voxels}, {"keypoints", summary.keypoints}};
+  return {{"path", input.path.string()},   {"points", input.total},        {"dropped_points", input.dropped},
+          {"streamed", !input.whole()},    {"voxels", summary.voxels},     {"keypoints", summary.keypoints}};
 }
 
 Json to_json(const std::vector<KeypointMatch>& matches) {
@@ -113,9 +113,7 @@ std::string report_text(const Json& report) {
   return text + "\n";
 }
 
-Json to_json(const Transformation& transformation) {
-  return rows(transformation.matrix());
-}
+Json to_json(const Transformation& transformation) { return rows(transformation.matrix()); }
 
 Json to_json(const Options& options) {
   Json json = Json::object();

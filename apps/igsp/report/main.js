@@ -28,28 +28,34 @@ function preparePoses() {
 const iterationPoses = () => scene.poses.filter((pose) => pose.kind === 'iteration');
 
 function stepText(pose) {
-  const near = `${percent(pose.within / pose.distances.length)} of the source within ${short(scene.reach)} units of the target`;
+  const near = `${percent(pose.within / pose.distances.length)} of the source within ${short(scene.reach)} units ` +
+    'of the target';
   const agreeing = pose.pairs.filter((pair) => pair[2]).length;
-  const lines = pose.pairs.length === 0 ? '' : `${count(pose.pairs.length)} matched keypoints, ${count(agreeing)} of them ` +
-    `(green) within ${voxels(scene.reach_in_voxels)} of each other ${run.target_from_source ? 'at the final pose' : 'here'}`;
+  const where = run.target_from_source ? 'at the final pose' : 'here';
+  const lines = pose.pairs.length === 0 ? '' : `${count(pose.pairs.length)} matched keypoints, ` +
+    `${count(agreeing)} of them (green) within ${voxels(scene.reach_in_voxels)} of each other ${where}`;
   const record = pose.record;
   const details = {
     given: () => `the clouds in the frames of their files${lines ? '; lines: the ' + lines : ''}.`,
     iteration: () => `${lines}. Energy ${short(record.energy, 5)} bits, T_cd ${short(record.t_cd)} bits, ` +
       `W_fd ${record.w_fd.toFixed(2)}, W_ed ${record.w_ed.toFixed(2)}. ${near}.`,
-    final: () => `the answer, after the fine registration${lines ? '; lines: the ' + lines + ', of the last iteration' : ''}. ${near}.`,
+    final: () => 'the answer, after the fine registration' +
+      `${lines ? '; lines: the ' + lines + ', of the last iteration' : ''}. ${near}.`,
     runner_up: () => `the best other pose that was looked into. ${near}.`,
   };
-  const nearer = pose.drawn_nearer === null ? '' : ` Drawn beside the target: its true place is ${short(pose.drawn_nearer)} units away.`;
+  const nearer = pose.drawn_nearer === null ? ''
+    : ` Drawn beside the target: its true place is ${short(pose.drawn_nearer)} units away.`;
   return `${pose.label}: ${details[pose.kind]()}${nearer}`;
 }
 
 function thinningText() {
-  const part = (name, cloud, all) => cloud.drawn < all ? `${count(cloud.drawn)} of ${count(all)} points of the ${name}`
-    : `all ${count(all)} points of the ${name}`;
-  const thinned = scene.source.drawn < run.source.points || scene.target.drawn < run.target.points;
-  return `Drawn: ${part('source', scene.source, run.source.points)} and ${part('target', scene.target, run.target.points)}` +
-    (thinned ? ', thinned for display. ' : '. ') +
+  const part = (name) => {
+    const {drawn} = scene[name], all = run[name].points;
+    const kind = run[name].streamed ? 'centroids of small voxels instead of the' : 'of';
+    return `${drawn < all ? `${count(drawn)} ${kind}` : 'all'} ${count(all)} points of the ${name}`;
+  };
+  const thinned = ['source', 'target'].some((name) => scene[name].drawn < run[name].points);
+  return `Drawn: ${part('source')} and ${part('target')}${thinned ? ', thinned for display' : ''}. ` +
     `Distances are from each drawn source point to the nearest of ${count(scene.target.known)} target points. ` +
     'Drag to turn, wheel to zoom, right button to move; or Tab to the picture and use the arrow keys, plus and minus.';
 }
@@ -67,6 +73,7 @@ function start() {
   slider.max = steps.length - 1;
   slider.value = steps.length - 1;
   slider.disabled = byId('play').disabled = steps.length === 1;
+  if (steps.length === 1) byId('compare').checked = false;
 
   let view = null;
   try {

@@ -33,7 +33,9 @@ function axis(title, options = {}) {
 
 function addChart(canvas, configuration) {
   configuration.options = {
-    animation: false, responsive: true, maintainAspectRatio: false, interaction: {mode: 'nearest', axis: 'x', intersect: false},
+    animation: false,
+    maintainAspectRatio: false,
+    interaction: {mode: 'nearest', axis: 'x', intersect: false},
     ...configuration.options,
   };
   configuration.options.plugins = {legend: {display: false}, ...configuration.options.plugins};
@@ -52,8 +54,8 @@ function addLinePlot(title, xs, series, axes, onPick) {
     data: {
       datasets: series.map((one) => ({
         label: one.name, data: xs.map((x, i) => ({x, y: one.values[i]})), yAxisID: one.side ?? 'y', borderWidth: 2,
-        pointRadius: xs.length > 1 ? 0 : 3, pointHoverRadius: 4, borderDash: one.dash ? [5, 3] : [], themeColour: one.colour,
-        borderColor: colour(one.colour), backgroundColor: colour(one.colour),
+        pointRadius: xs.length > 1 ? 0 : 3, pointHoverRadius: 4, borderDash: one.dash ? [5, 3] : [],
+        themeColour: one.colour, borderColor: colour(one.colour), backgroundColor: colour(one.colour),
       })),
     },
     options: {
@@ -62,9 +64,13 @@ function addLinePlot(title, xs, series, axes, onPick) {
         stepLine: {k: null},
         legend: {display: series.length > 1, labels: {color: colour('text'), boxWidth: 22, boxHeight: 1}},
       },
-      scales: {x: axis('iteration k', {
-        type: 'linear', min: xs[0], max: xs[xs.length - 1], ticks: {color: colour('soft'), precision: 0, includeBounds: false},
-      }), ...axes},
+      scales: {
+        x: axis('iteration k', {
+          type: 'linear', min: xs[0], max: xs[xs.length - 1],
+          ticks: {color: colour('soft'), precision: 0, includeBounds: false},
+        }),
+        ...axes,
+      },
     },
   });
 }
@@ -85,12 +91,16 @@ function showPlots(onPick) {
   plot('Matches', [{name: 'matches', values: values('matches'), colour: 'match'},
     {name: 'candidate pairs below T_cd', values: values('candidate_edges'), colour: 'target', dash: true}],
   {y: axis('number', {beginAtZero: true})});
-  plot('Energy', [{name: 'energy', values: values('energy'), colour: 'accent'}], {y: axis('energy [bits]', {beginAtZero: true})});
+  plot('Energy', [{name: 'energy', values: values('energy'), colour: 'accent'}],
+    {y: axis('energy [bits]', {beginAtZero: true})});
   plot('Residuals', [{name: 'matched keypoints, RMS', values: records.map(keypointRms), colour: 'match'},
-    {name: 'clouds where they overlap, median', values: iterationPoses().map((pose) => pose.median), colour: 'source', dash: true}],
+    {name: 'clouds where they overlap, median', values: iterationPoses().map((pose) => pose.median), colour: 'source',
+      dash: true}],
   {y: axis('distance [units of the cloud]', {beginAtZero: true})});
-  plot('Step sizes', [{name: 'rotation', values: values('rotation_step_rad').map((step) => positive(degrees(step))), colour: 'source'},
-    {name: 'translation', values: values('translation_step').map(positive), colour: 'target', dash: true, side: 'right'}],
+  const turns = values('rotation_step_rad').map((step) => positive(degrees(step)));
+  plot('Step sizes', [{name: 'rotation', values: turns, colour: 'source'},
+    {name: 'translation', values: values('translation_step').map(positive), colour: 'target', dash: true,
+      side: 'right'}],
   {y: axis('rotation [deg]', logarithmic()), right: right('translation [units]', logarithmic())});
 }
 
@@ -125,10 +135,15 @@ function showHistogram() {
   const canvas = byId('chart-histogram');
   addChart(canvas, {
     type: 'bar',
-    data: {datasets: [{data: [], backgroundColor: colour('accent'), themeColour: 'accent', barPercentage: 1, categoryPercentage: 1}]},
+    data: {
+      datasets: [{
+        data: [], backgroundColor: colour('accent'), themeColour: 'accent', barPercentage: 1, categoryPercentage: 1,
+      }],
+    },
     options: {
       scales: {
-        x: axis('distance to the nearest target point [units of the cloud]', {type: 'linear', min: 0, max: scene.reach, offset: false}),
+        x: axis('distance to the nearest target point [units of the cloud]',
+          {type: 'linear', min: 0, max: scene.reach, offset: false}),
         y: axis('source points', {beginAtZero: true}),
       },
     },
@@ -145,7 +160,8 @@ function updateHistogram(pose) {
   chart.data.datasets[0].data = bins.map((y, i) => ({x: (i + 0.5) / histogramBins * scene.reach, y}));
   chart.update();
   const drawn = pose.distances.length;
-  byId('histogram-note').textContent = `${pose.label}: ${count(pose.within)} of the ${count(drawn)} source points drawn ` +
+  byId('histogram-note').textContent =
+    `${pose.label}: ${count(pose.within)} of the ${count(drawn)} source points drawn ` +
     `(${percent(pose.within / drawn)}) have a target point within ${short(scene.reach)} units ` +
     `(${voxels(scene.reach_in_voxels)})` + (pose.within > 0 ? `; median ${short(pose.median)} units. ` : '. ') +
     'The distance between points has a floor that neither pose nor noise explains: the spacing of the target. ' +

@@ -78,8 +78,9 @@ class View {
     geometry.setAttribute('normals', new THREE.BufferAttribute(new Int8Array(bytesOf(cloud.normals).buffer), 3, true));
     geometry.setAttribute('separation', new THREE.BufferAttribute(new Uint8Array(cloud.drawn).fill(255), 1, true));
     const uniforms = {
-      pointSize: {value: 2}, byDistance: {value: false}, plain: {value: new THREE.Color()}, far: {value: new THREE.Color()},
-      ramp: {value: rampColours.map((one) => new THREE.Color(one))}, turn: {value: new THREE.Matrix3()}, lift: {value: 0},
+      pointSize: {value: 2}, byDistance: {value: false}, lift: {value: 0}, turn: {value: new THREE.Matrix3()},
+      plain: {value: new THREE.Color()}, far: {value: new THREE.Color()},
+      ramp: {value: rampColours.map((one) => new THREE.Color(one))},
     };
     const points = new THREE.Points(geometry, new THREE.ShaderMaterial({vertexShader, fragmentShader, uniforms}));
     points.matrixAutoUpdate = false;
@@ -118,8 +119,9 @@ class View {
     geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(places), 3));
     geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(colours), 3));
     const shared = {vertexColors: THREE.VertexColors, transparent: true};
-    pose.objects = [new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({...shared, opacity: 0.75})),
-      new THREE.Points(geometry, new THREE.PointsMaterial({...shared, size: 5, sizeAttenuation: false, opacity: 0.95}))];
+    const lines = new THREE.LineBasicMaterial({...shared, opacity: 0.75});
+    const ends = new THREE.PointsMaterial({...shared, size: 5, sizeAttenuation: false, opacity: 0.95});
+    pose.objects = [new THREE.LineSegments(geometry, lines), new THREE.Points(geometry, ends)];
     for (const object of pose.objects) object.frustumCulled = false;
     return pose.objects;
   }
@@ -138,25 +140,28 @@ class View {
     return points;
   }
 
-  // Where to look and from how far, so that nearly all points are in the pane; a few stray ones must not make the rest a
-  // dot.
+  // Where to look and from how far, so that nearly all points are in the pane; a few stray ones must not make the rest
+  // a dot. The middle of the points is not the middle of their picture, since what is near is large: hence the passes.
   fit(pose, back) {
     const points = this.sample(pose);
-    const rank = (values, share) => values.sort((a, b) => a - b)[Math.round(share * (values.length - 1))];
-    const middle = (axis) => {
-      const values = points.map((point) => point[axis]);
-      return (rank(values, 0.02) + rank(values, 0.98)) / 2;
-    };
-    const centre = new THREE.Vector3(middle('x'), middle('y'), middle('z'));
     const right = new THREE.Vector3().crossVectors(this.camera.up, back).normalize();
     const up = new THREE.Vector3().crossVectors(back, right);
     const vertical = Math.tan(this.camera.fov * Math.PI / 360), horizontal = vertical * this.aspect();
-    const distance = rank(points.map((point) => {
-      const offset = point.sub(centre);
-      return offset.dot(back) +
-        Math.max(Math.abs(offset.dot(right)) / horizontal, Math.abs(offset.dot(up)) / vertical);
-    }), 0.98);
-    return {centre, distance: Math.max(1.06 * distance, 1e-9)};
+    const rank = (values, share) => values.sort((a, b) => a - b)[Math.round(share * (values.length - 1))];
+    const middle = (values) => (rank(values, 0.02) + rank(values, 0.98)) / 2;
+    const centre = new THREE.Vector3(...['x', 'y', 'z'].map((axis) => middle(points.map((point) => point[axis]))));
+    let distance = 0;
+    for (let pass = 0; pass < 4; ++pass) {
+      const offsets = points.map((point) => point.clone().sub(centre));
+      distance = Math.max(1e-9, 1.12 * rank(offsets.map((offset) => offset.dot(back) +
+        Math.max(Math.abs(offset.dot(right)) / horizontal, Math.abs(offset.dot(up)) / vertical)), 0.98));
+      const seen = offsets.filter((offset) => offset.dot(back) < 0.9 * distance);
+      for (const side of [right, up]) {
+        const shift = middle(seen.map((offset) => offset.dot(side) / (distance - offset.dot(back))));
+        if (pass < 3) centre.addScaledVector(side, shift * distance);
+      }
+    }
+    return {centre, distance};
   }
 
   frame() {
@@ -203,7 +208,9 @@ class View {
   }
 
   turnByKey(event) {
-    const turns = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1], '+': 0.85, '=': 0.85, '-': 1 / 0.85};
+    const turns = {
+      ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1], '+': 0.85, '=': 0.85, '-': 1 / 0.85,
+    };
     const turn = turns[event.key];
     if (turn === undefined) return;
     event.preventDefault();
@@ -240,7 +247,8 @@ class View {
   }
 
   setPointSize(size) {
-    for (const cloud of [this.source, this.target]) cloud.material.uniforms.pointSize.value = size * this.renderer.getPixelRatio();
+    const pixels = size * this.renderer.getPixelRatio();
+    for (const cloud of [this.source, this.target]) cloud.material.uniforms.pointSize.value = pixels;
     this.draw();
   }
 
@@ -265,7 +273,7 @@ class View {
 
   drawNow() {
     const {clientWidth: width, clientHeight: height} = this.renderer.domElement;
-    if (width === 0 || !this.pose.separation) return;
+    if (width === 0) return;
     this.renderer.setSize(width, height, false);
     const panes = this.panes();
     panes.forEach((pose, i) => {

@@ -7,7 +7,7 @@ const scene = data.scene;
 
 const byId = (id) => document.getElementById(id);
 const percent = (share) => (100 * share).toFixed(share > 0 && share < 0.1 ? 1 : 0) + ' %';
-const short = (value, digits = 3) => value === 0 ? '0' : String(Number(value.toPrecision(digits)));
+const short = (value, digits = 3) => value === null ? 'not a number' : String(Number(value.toPrecision(digits)));
 const count = (value) => value.toLocaleString('en');
 const voxels = (value) => short(value) + ' voxels';
 const degrees = (radians) => radians * 180 / Math.PI;
@@ -56,7 +56,8 @@ function showVerdict() {
   let text = `The source lies on the target, and the evidence says so: confidence ${confidenceText(run.confidence)}.`;
   if (!registered) {
     text = run.target_from_source
-      ? `No answer to rely on. The best estimate is shown below; the confidence in it is ${confidenceText(run.confidence)}.`
+      ? 'No answer to rely on. The best estimate is shown below; ' +
+        `the confidence in it is ${confidenceText(run.confidence)}.`
       : 'No transformation was found; the clouds are shown as they were given.';
   }
   byId('verdict-text').textContent = text;
@@ -73,7 +74,8 @@ function showEvidence() {
     addRow(table, 'Matches that agree', `${count(agreeing)} of ${count(mutual)}`,
       'keypoints that choose each other by their descriptors, and those of them within ' +
       `${voxels(scene.reach_in_voxels)} at this pose`);
-    addRow(table, 'Surfaces touch', percent(run.evidence.contact_share), 'of the places where the surfaces come near each other');
+    addRow(table, 'Surfaces touch', percent(run.evidence.contact_share),
+      'of the places where the surfaces come near each other');
     addRow(table, 'RMSE', short(run.rmse), 'units of the cloud; along the normals, where the surfaces meet');
     addRow(table, 'Quality', short(run.evidence.quality), 'both questions in one number, on a scale of log odds');
   }
@@ -104,17 +106,20 @@ function showPrecision() {
   }
   const table = make('table');
   table.append(make('tr', ['standard deviation', 'x', 'y', 'z'].map((text) => make('th', text))));
-  const row = (name, values) => table.append(make('tr', [make('th', name), ...values.map((v) => make('td', short(v)))]));
+  const row = (name, values) =>
+    table.append(make('tr', [make('th', name), ...values.map((value) => make('td', short(value)))]));
   row('rotation about [deg]', deviation.slice(0, 3).map(degrees));
   row('translation along [units]', deviation.slice(3));
-  place.append(table, make('p', 'From the residuals of the fine registration, as if they were independent: a lower bound.', 'note'));
+  const note = 'From the residuals of the fine registration, as if they were independent: a lower bound.';
+  place.append(table, make('p', note, 'note'));
   if (free.length === 0) place.append(make('p', 'No direction is free at this pose.'));
 }
 
 function showRun() {
   const table = byId('clouds');
   table.append(make('tr', ['', 'source', 'target'].map((text) => make('th', text))));
-  const both = (name, of) => table.append(make('tr', [make('th', name), make('td', of(run.source)), make('td', of(run.target))]));
+  const both = (name, of) =>
+    table.append(make('tr', [make('th', name), make('td', of(run.source)), make('td', of(run.target))]));
   both('file', (cloud) => cloud.path);
   both('points', (cloud) => count(cloud.points) + (cloud.streamed ? ', streamed' : ''));
   both('dropped, not finite', (cloud) => count(cloud.dropped_points));
