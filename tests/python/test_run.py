@@ -3,7 +3,6 @@
 import signal
 import subprocess
 import sys
-import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 
@@ -45,20 +44,26 @@ def test_ctrl_c_is_a_keyboard_interrupt(progress, scans):
     assert process.returncode == 0
 
 
-def test_other_threads_run_meanwhile(pair):
-    """While one thread is in the library, this one wakes up many times; it could not if the lock were held."""
-    for work in [
-        lambda: igsp.align(*pair, threads=1),
-        lambda: igsp.extract_features(pair[0], voxel_size=0.2),
-        lambda: igsp.simulate("park", points=100000),
-    ]:
-        thread = threading.Thread(target=work)
-        thread.start()
-        awake = 0
-        while thread.is_alive():
-            time.sleep(0.001)
-            awake += 1
-        assert awake > 20
+@pytest.mark.parametrize(
+    "call",
+    [
+        "igsp.simulate('park', points=100_000_000)",
+        "igsp.extract_features(cloud, voxel_size=0.005, pca_radius=99)",
+        "igsp.align(cloud, cloud, voxel_size=0.005, pca_radius=99)",
+    ],
+)
+def test_other_threads_run_meanwhile(call):
+    """One thread is in the library for very long; if it held the interpreter lock, the other could never go on."""
+    program = f"""
+import os, threading, time, numpy, igsp
+cloud = numpy.random.default_rng(0).uniform(size=(1_000_000, 3))
+threading.Thread(target=lambda: {call}, daemon=True).start()
+time.sleep(1)
+print("awake", flush=True)
+os._exit(0)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout) == (0, "awake\n"), done.stderr
 
 
 def test_parallel_runs_give_the_same_answers(pair, result):
