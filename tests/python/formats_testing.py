@@ -135,6 +135,7 @@ def make_double_e57(path: Path, fields: dict[str, Array], extra: Any = None) -> 
     count = len(next(iter(fields.values())))
     with pye57.E57(str(path), "w") as file:
         image = file.image_file
+        image.extensionsAdd("nor", "http://www.libe57.org/E57_NOR_surface_normals.txt")
         scan, prototype = libe57.StructureNode(image), libe57.StructureNode(image)
         scan.set("guid", libe57.StringNode(image, "{scan}"))
         buffers = libe57.VectorSourceDestBuffer()

@@ -133,21 +133,21 @@ def test_spherical_double_precision_scan_without_pose(tmp_path: Path) -> None:
 def test_fields_unknown_to_the_reader_are_kept(tmp_path: Path) -> None:
     points = random_points(300)
     fields = {f"cartesian{axis}": points[:, i].copy() for i, axis in enumerate("XYZ")}
-    fields |= {"timeStamp": np.arange(300.0), "isIntensityInvalid": (np.arange(300) % 2).astype(np.uint8)}
+    fields |= {"nor:normalX": np.arange(300.0), "isIntensityInvalid": (np.arange(300) % 2).astype(np.uint8)}
     source, output = tmp_path / "source.e57", tmp_path / "aligned.e57"
     make_double_e57(source, fields)
     formats.write_aligned(source, output, motion())
     np.testing.assert_allclose(formats.read_cloud(output).points, moved(motion(), points), rtol=0, atol=1e-12)
     image = libe57.ImageFile(str(output), "r")
-    times, flags = np.empty(300), np.empty(300, np.uint8)
+    normals, flags = np.empty(300), np.empty(300, np.uint8)
     buffers = libe57.VectorSourceDestBuffer()
-    buffers.append(libe57.SourceDestBuffer(image, "timeStamp", times, 300, True, True))
+    buffers.append(libe57.SourceDestBuffer(image, "nor:normalX", normals, 300, True, True))
     buffers.append(libe57.SourceDestBuffer(image, "isIntensityInvalid", flags, 300, True, True))
     reader = image.root()["data3D"][0]["points"].reader(buffers)
     assert reader.read() == 300
     reader.close()
     image.close()
-    np.testing.assert_array_equal(times, fields["timeStamp"])
+    np.testing.assert_array_equal(normals, fields["nor:normalX"])
     np.testing.assert_array_equal(flags, fields["isIntensityInvalid"])
 
 
