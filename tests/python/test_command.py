@@ -118,7 +118,7 @@ def test_ctrl_c_ends_with_130_and_leaves_no_file(pip_command, laz, scans, tmp_pa
     folder = tmp_path / "empty"
     folder.mkdir()
     reader, writer = pty.openpty()  # a terminal: the bars tell how far it is
-    # With these options the run takes minutes when it is not interrupted.
+    # With these options the run goes on for long when it is not interrupted.
     process = subprocess.Popen(
         [
             pip_command,

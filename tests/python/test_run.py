@@ -3,79 +3,67 @@
 import signal
 import subprocess
 import sys
-import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
+import pytest
 
 import igsp
 
-# With these options a run takes minutes when it is not interrupted.
-LONG = "dict(voxel_size=0.05, pca_radius=60, descriptor_radius=60)"
-
-
-def start(program, *arguments):
-    """A Python process that has got as far as printing a line."""
-    process = subprocess.Popen(
-        [sys.executable, "-c", program, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    assert process.stdout.readline() == "running\n"
-    return process
-
-
-def test_ctrl_c_is_a_keyboard_interrupt(scans):
-    process = start(
-        f"""
+# Many keypoints, and a loop that may not converge: hours when the run is not interrupted.
+LONG_RUN = """
 import sys, igsp
+source, target = (igsp.read_points(path) for path in sys.argv[2:])
 def say(stage, fraction):
-    if stage == "keypoints" and fraction > 0: print("running", flush=True)
+    if stage == "loop": print("running", flush=True)
 try:
-    igsp.align(sys.argv[1], sys.argv[2], progress=say, **{LONG})
+    print("starting", flush=True)
+    igsp.align(source, target, progress=say if sys.argv[1] == "heard" else False, preset="paper", voxel_size=0.2,
+               min_curvature=0, suppression_radius=1.5, weight_changing_rate=1e6, rotation_tolerance_rad=0,
+               translation_tolerance=0, max_iterations=10000)
 except KeyboardInterrupt:
     print("interrupted")
-""",
-        scans / "park/station_1.ply",
-        scans / "park/station_0.ply",
-    )
-    process.send_signal(signal.SIGINT)
-    output, error = process.communicate(timeout=60)
-    assert (process.returncode, output.split()[-1]) == (0, "interrupted"), error
+"""
 
 
-def test_ctrl_c_needs_no_progress_function(scans):
-    process = start(
-        f"""
-import os, signal, sys, threading, time, igsp
-source, target = (igsp.read_points(path) for path in sys.argv[1:])
-def interrupt():
-    time.sleep(1)  # this thread goes on only because the run lets it
-    os.kill(os.getpid(), signal.SIGINT)
-threading.Thread(target=interrupt).start()
-print("running", flush=True)
-igsp.align(source, target, **{LONG})
-""",
-        scans / "park/station_1.ply",
-        scans / "park/station_0.ply",
-    )
-    _, error = process.communicate(timeout=60)
-    assert process.returncode == -signal.SIGINT and error.rstrip().endswith("KeyboardInterrupt")
+@pytest.mark.parametrize("progress", ["heard", "unheard"])
+def test_ctrl_c_is_a_keyboard_interrupt(progress, scans):
+    paths = [scans / "park/station_1.ply", scans / "park/station_0.ply"]
+    process = subprocess.Popen([sys.executable, "-c", LONG_RUN, progress, *paths], stdout=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout.readline() == "starting\n"
+        if progress == "heard":
+            assert process.stdout.readline() == "running\n"
+        else:
+            time.sleep(2)  # by now it is in the library
+        process.send_signal(signal.SIGINT)
+        assert process.communicate(timeout=60)[0].split()[-1] == "interrupted"
+    finally:
+        process.kill()
+    assert process.returncode == 0
 
 
-def test_other_threads_run_meanwhile(pair):
-    """While one thread is in the library, this one wakes up many times; it could not if the lock were held."""
-    for work in [
-        lambda: igsp.align(*pair, threads=1),
-        lambda: igsp.extract_features(pair[0], voxel_size=0.2),
-        lambda: igsp.simulate("park", points=100000),
-    ]:
-        thread = threading.Thread(target=work)
-        thread.start()
-        awake = 0
-        while thread.is_alive():
-            time.sleep(0.001)
-            awake += 1
-        assert awake > 5
+@pytest.mark.parametrize(
+    "call",
+    [
+        "igsp.simulate('park', points=100_000_000)",
+        "igsp.extract_features(cloud, voxel_size=0.005, pca_radius=99)",
+        "igsp.align(cloud, cloud, voxel_size=0.005, pca_radius=99)",
+    ],
+)
+def test_other_threads_run_meanwhile(call):
+    """One thread is in the library for very long; if it held the interpreter lock, the other could never go on."""
+    program = f"""
+import os, threading, time, numpy, igsp
+cloud = numpy.random.default_rng(0).uniform(size=(1_000_000, 3))
+threading.Thread(target=lambda: {call}, daemon=True).start()
+time.sleep(1)
+print("awake", flush=True)
+os._exit(0)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout) == (0, "awake\n"), done.stderr
 
 
 def test_parallel_runs_give_the_same_answers(pair, result):
