@@ -28,14 +28,18 @@ struct NamedScans {
   const char* dataset;
   const char* name;
 };
-constexpr std::array<NamedScans, 8> real_pairs{{{"Stanford", "bunny/bun270--bun000"},
-                                                {"Stanford", "bunny/bun180--bun090"},
-                                                {"Stanford", "bunny/bun315--top3"},
-                                                {"Stanford", "bunny/top2--bun270"},
-                                                {"Facade", "facade/s4--s2"},
-                                                {"Facade", "facade/s5--s3"},
-                                                {"Facade", "facade/s6--s3"},
-                                                {"Facade", "facade/s5--s4"}}};
+constexpr std::array<NamedScans, 12> real_pairs{{{"Stanford", "bunny/bun270--bun000"},
+                                                 {"Stanford", "bunny/bun180--bun090"},
+                                                 {"Stanford", "bunny/bun315--top3"},
+                                                 {"Stanford", "bunny/top2--bun270"},
+                                                 {"Stanford 80 %", "bunny/bun045--bun000"},
+                                                 {"Stanford 80 %", "bunny/bun315--bun000"},
+                                                 {"Stanford 80 %", "bunny/top2--bun180"},
+                                                 {"Stanford 80 %", "bunny/ear-back--bun180"},
+                                                 {"Facade", "facade/s4--s2"},
+                                                 {"Facade", "facade/s5--s3"},
+                                                 {"Facade", "facade/s6--s3"},
+                                                 {"Facade", "facade/s5--s4"}}};
 
 struct SimulatedScene {
   const char* dataset;

@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""Runs PCL's methods on the pairs of `igsp_paper pairs` and writes peers.csv, a row per answer (Table 4).
+
+Voxel size and start are those of our own runs; K-4PCS is told the true overlap. ICP and NDT run twice: from where the
+clouds lie, three diagonals apart in any attitude, and with the centroids put on each other. Seconds are CPU seconds of
+one thread, without reading the files.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+
+from clouds import displacement, read_points, rotation_angle_deg
+from rows import Row, read_rows, write_rows
+
+METHODS = {
+    "icp": ["icp", "--as-given"],
+    "icp_centred": ["icp"],
+    "ndt": ["ndt", "--as-given"],
+    "ndt_centred": ["ndt"],
+    "kfpcs": ["kfpcs"],
+    "geometric_consistency": ["geometric_consistency"],
+}
+
+
+def run(program: Path, arguments: list[str]) -> dict:
+    """The program's JSON; a crash of PCL is an answer too."""
+    done = subprocess.run([program, *arguments], capture_output=True, text=True)
+    return json.loads(done.stdout) if done.returncode == 0 else {"answers": [], "error": done.stderr.strip()}
+
+
+def rows_of(pair: Row, folder: Path, voxel_size: float, program: Path, time_limit_s: int) -> list[Row]:
+    source, target = folder / pair["source"], folder / pair["target"]
+    truth = np.loadtxt(folder / pair["truth"]).reshape(4, 4)
+    centroid = read_points(source).mean(axis=0)
+    rows = []
+    for method, arguments in METHODS.items():
+        answers = run(program, [*arguments, str(source), str(target), "--voxel-size", str(voxel_size), "--threads", "1",
+                                "--overlap", str(pair["overlap"]), "--time-limit", str(time_limit_s)])
+        for answer in answers["answers"] or [{"label": "", "target_from_source": np.full((4, 4), np.nan)}]:
+            estimate = np.array(answer["target_from_source"])
+            delta = estimate @ np.linalg.inv(truth)
+            rotation_deg, moved = rotation_angle_deg(delta[:3, :3]), displacement(estimate, truth, centroid)
+            right = rotation_deg < pair["max_rotation_error_deg"] and moved < pair["max_translation_error_m"]
+            rows.append({"pair": pair["name"], "dataset": pair["group"], "method": method, "after": answer["label"],
+                         "total_s": f"{answer.get('cpu_seconds', np.nan):.4g}",
+                         "rotation_error_deg": f"{rotation_deg:.6g}",
+                         "translation_error_m": f"{np.linalg.norm(delta[:3, 3]):.6g}",
+                         "centroid_displacement_m": f"{moved:.6g}", "right": int(right)})
+            print(f"{pair['name']} {method} {answer['label']}: {rows[-1]['total_s']} s, {rotation_deg:.3g} deg", flush=True)
+    return rows
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--program", type=Path, required=True, help="pcl_peer")
+    parser.add_argument("--pairs", type=Path, required=True, help="folder that igsp_paper pairs wrote")
+    parser.add_argument("--data", type=Path, required=True, help="folder with registrations.csv, for peers.csv")
+    parser.add_argument("--time-limit", type=int, default=30, help="of K-4PCS [s]")
+    arguments = parser.parse_args()
+    voxel_sizes = {row["pair"]: row["voxel_size"] for row in read_rows(arguments.data / "registrations.csv")}
+    rows = []
+    for pair in read_rows(arguments.pairs / "cases.csv"):
+        rows += rows_of(pair, arguments.pairs, voxel_sizes[pair["name"]], arguments.program, arguments.time_limit)
+    write_rows(arguments.data / "peers.csv", rows)
+
+
+if __name__ == "__main__":
+    main()
