@@ -86,6 +86,7 @@ def draw_row(line: np.ndarray, view: View, pair: Row, folder: Path, run: list[Ro
         axis.set(aspect="equal", xlim=(low[view.axes[0]] - room, high[view.axes[0]] + room),
                  ylim=(low[view.axes[1]] - room, high[view.axes[1]] + room), xlabel=f"{'xyz'[view.axes[0]]} [{view.unit}]")
         axis.tick_params(labelsize=7)
+        axis.xaxis.label.set_size(8)
         axis.grid(False)
     line[0].set_ylabel(f"{view.dataset}, {view.preset} preset\n{'xyz'[view.axes[1]]} [{view.unit}]", fontsize=8)
     return points

@@ -4,8 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import os
-import platform
 import re
 from pathlib import Path
 
@@ -105,19 +103,6 @@ def growth_table(growth: list[Row]) -> str:
     return markdown(["keypoints", "k", "candidate pairs", "sparse [ms]", "dense [ms]", "ratio"], lines)
 
 
-def parameters_table(parameters: list[Row]) -> str:
-    """Fig. 3's best settings by number: over all data sets, pairs registered right and mean precision and recall."""
-    lines = []
-    for name in in_order(parameters, "parameter"):
-        rows = [row for row in parameters if row["parameter"] == name]
-        for value in sorted(set(row["value"] for row in rows)):
-            run = [row for row in rows if row["value"] == value]
-            lines.append([name, f"{value:g}", f"{sum(row['right'] for row in run)} of {len(run)}",
-                          f"{mean(run, 'precision'):.2f}", f"{mean(run, 'recall'):.2f}",
-                          f"{mean(run, 'iterations'):.1f}"])
-    return markdown(["parameter", "value", "right", "precision", "recall", "iterations"], lines)
-
-
 def last_precision_table(iterations: list[Row]) -> str:
     """Fig. 8 in numbers: first, best and last iteration, means over the pairs."""
     lines = []
@@ -135,15 +120,10 @@ def last_precision_table(iterations: list[Row]) -> str:
 
 
 def left_out(pairs: list[Row]) -> str:
-    if any(row["origin"].startswith("igsp") is False for row in pairs):
+    if any(not row["origin"].startswith("igsp") for row in pairs):
         return ""
     return ("**The folder of real scans was not there when this page was made: Stanford and Facade are left out of every "
             "table and figure.**\n\n")
-
-
-def machine() -> str:
-    cpu = re.search(r"model name\s*:\s*(.*)", Path("/proc/cpuinfo").read_text())
-    return f"{cpu.group(1) if cpu else platform.processor()}, {os.cpu_count()} cores, {platform.system()}"
 
 
 def filled(template: str, values: dict[str, str]) -> str:
@@ -154,20 +134,23 @@ def filled(template: str, values: dict[str, str]) -> str:
     return re.sub(r"\{\{(\w+)\}\}", lambda match: values[match.group(1)], template)
 
 
+def page(data: Path, template: str) -> str:
+    pairs, registrations, peers, growth, iterations = (
+        read_rows(data / f"{name}.csv") for name in ("pairs", "registrations", "peers", "growth", "iterations"))
+    tables = [errors_table(registrations, peers, dataset) for dataset in in_order(registrations, "dataset")]
+    return filled(template, {
+        "left_out": left_out(pairs), "machine": (data / "machine.txt").read_text().strip(), "pairs": pairs_table(pairs),
+        "times": times_table(registrations), "growth": growth_table(growth), "errors": "\n\n".join(tables),
+        "precision": last_precision_table(iterations)})
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, required=True, help="folder of the CSV files")
     parser.add_argument("--template", type=Path, default=Path(__file__).with_name("README.template.md"))
     parser.add_argument("--out", type=Path, required=True, help="the page")
     arguments = parser.parse_args()
-    pairs, registrations, peers, growth, iterations, parameters = (read_rows(arguments.data / f"{name}.csv") for name in (
-        "pairs", "registrations", "peers", "growth", "iterations", "parameters"))
-    values = {"left_out": left_out(pairs), "machine": machine(), "pairs": pairs_table(pairs),
-              "times": times_table(registrations), "growth": growth_table(growth),
-              "errors": "\n\n".join(errors_table(registrations, peers, dataset)
-                                    for dataset in in_order(registrations, "dataset")),
-              "precision": last_precision_table(iterations), "parameters": parameters_table(parameters)}
-    arguments.out.write_text(filled(arguments.template.read_text(), values))
+    arguments.out.write_text(page(arguments.data, arguments.template.read_text()))
 
 
 if __name__ == "__main__":

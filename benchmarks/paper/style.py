@@ -21,6 +21,6 @@ LINES = {"Stanford": {"color": "black", "marker": "o", "linestyle": "-"},
 
 def save(figure: plt.Figure, path: Path) -> None:
     """As SVG and PNG."""
-    figure.savefig(path.with_suffix(".svg"), metadata={"Date": None}, dpi=150)
+    figure.savefig(path.with_suffix(".svg"), metadata={"Date": None}, dpi=90)
     figure.savefig(path.with_suffix(".png"), dpi=110)
     plt.close(figure)
