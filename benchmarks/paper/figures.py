@@ -37,7 +37,7 @@ def draw_weights(rows: list[Row], path: Path) -> None:
     weights.plot([], [], "k-", label="$W_{fd}$")
     weights.plot([], [], "k--", label="$W_{ed}$")
     weights.set(xlabel="iteration k", ylabel="weight")
-    weights.legend(loc="center right")
+    weights.legend(loc="center right", frameon=True, framealpha=0.9)
     of_m = [row for row in rows if row["parameter"] == "m"]
     for dataset in in_order(of_m, "dataset"):
         values, means = mean_over_pairs([row for row in of_m if row["dataset"] == dataset], "value", "iterations")
@@ -75,8 +75,9 @@ def draw_parameters(rows: list[Row], path: Path) -> None:
 def draw_precision_recall(rows: list[Row], path: Path) -> None:
     """Fig. 8: a point per iteration, a line per pair; the paper's preset and the default one."""
     datasets = in_order(rows, "dataset")
-    figure, axes = plt.subplots(2, (len(datasets) + 1) // 2, figsize=(7.2, 6.6), sharex=True, sharey=True,
-                                layout="constrained", squeeze=False)
+    columns = (len(datasets) + 1) // 2
+    figure, axes = plt.subplots(2, columns, figsize=(3 * columns, 5.8), sharex=True, sharey=True, layout="constrained",
+                                squeeze=False)
     for axis, dataset in zip(axes.flat, datasets):
         for preset, look in (("default", {"color": "tab:blue", "linestyle": "--", "marker": "^"}),
                              ("paper", {"color": "black", "linestyle": "-", "marker": "o"})):
@@ -93,11 +94,17 @@ def draw_precision_recall(rows: list[Row], path: Path) -> None:
         axis.set_xlabel("recall")
     for line in axes:
         line[0].set_ylabel("precision")
-    axes[0][0].plot([], [], "k-o", label="paper preset")
-    axes[0][0].plot([], [], "--^", color="tab:blue", label="default preset")
-    axes[0][0].plot([], [], "ko", markerfacecolor="white", markersize=7, linestyle="", label="first iteration")
-    axes[0][0].plot([], [], "ko", markersize=7, linestyle="", label="last iteration")
-    legend_on_top(figure, axes[0][0])
+    for axis in axes.flat[len(datasets):]:
+        axis.set_axis_off()
+    look_up = [plt.Line2D([], [], color="black", marker="o", markersize=3, label="paper preset"),
+               plt.Line2D([], [], color="tab:blue", linestyle="--", marker="^", markersize=3, label="default preset"),
+               plt.Line2D([], [], color="black", marker="o", markersize=7, markerfacecolor="white", linestyle="",
+                          label="first iteration"),
+               plt.Line2D([], [], color="black", marker="o", markersize=7, linestyle="", label="last iteration")]
+    if len(datasets) % 2:
+        axes[-1][-1].legend(handles=look_up, loc="center")
+    else:
+        axes[0][0].legend(handles=look_up, loc="best")
     save(figure, path)
 
 

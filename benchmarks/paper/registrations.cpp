@@ -21,7 +21,7 @@ constexpr const char* registration_header =
     "dense_iteration_s,rotation_error_deg,translation_error_m,centroid_displacement_m,right,registered,confidence,"
     "termination\n";
 constexpr const char* iteration_header =
-    "pair,dataset,preset,k,w_fd,w_ed,t_cd,candidate_edges,matches,correct,possible,precision,recall,energy,edges_s,"
+    "pair,dataset,preset,k,w_fd,w_ed,t_cd,candidate_edges,matches,correct,possible,precision,recall,precision_within_r_k,energy,edges_s,"
     "sparse_s,matrix_s,dense_s,rotation_error_deg,centroid_displacement_m,"
     "r00,r01,r02,t0,r10,r11,r12,t1,r20,r21,r22,t2\n";
 
@@ -45,13 +45,13 @@ std::string registration_row(const Pair& pair, std::string_view preset, const Re
 }
 
 std::string iteration_row(const Pair& pair, std::string_view preset, const IterationRecord& record,
-                          const MatchQuality& quality, const AssignmentCost& cost,
+                          const MatchQuality& quality, const MatchQuality& within_r_k, const AssignmentCost& cost,
                           const Transformation& target_from_source) {
   const PoseError error = pose_error(target_from_source, pair.truth, centroid_of(pair.source));
-  std::string row = fmt::format("{},{},{},{},{:.6g},{:.6g},{:.6g},{},{},{},{},{:.6g},{:.6g},{:.9g},", pair.name,
+  std::string row = fmt::format("{},{},{},{},{:.6g},{:.6g},{:.6g},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.9g},", pair.name,
                                 pair.dataset, preset, record.k, record.w_fd, record.w_ed, record.t_cd,
                                 record.candidate_edges, record.matches, quality.correct, quality.possible,
-                                quality.precision(), quality.recall(), record.energy) +
+                                quality.precision(), quality.recall(), within_r_k.precision(), record.energy) +
                     fmt::format("{:.4g},{:.4g},{:.4g},{:.4g},{:.6g},{:.6g}", cost.edges_s, cost.sparse_s, cost.matrix_s,
                                 cost.dense_s, error.rotation_rad / degree, error.centroid_displacement);
   for (int i = 0; i < 3; ++i) {
@@ -98,7 +98,8 @@ void add_paper(const Pair& pair, Tables& tables) {
   for (std::size_t i = 0; i < costs.size(); ++i) {
     const IterationRecord& record = outcome.iterations[i];
     times.dense_iteration += (costs[i].matrix_s + costs[i].dense_s) / static_cast<double>(costs.size());
-    tables.iterations += iteration_row(pair, "paper", record, quality_of(record, loop, options, pair.truth), costs[i],
+    tables.iterations += iteration_row(pair, "paper", record, quality_of(record, loop, options, pair.truth),
+                                       quality_of(record, loop, options, pair.truth, 1.0), costs[i],
                                        loop.to_world(record.target_from_source));
   }
   if (!costs.empty()) times.iteration = loop_s / static_cast<double>(costs.size());
@@ -113,11 +114,13 @@ void add_default(const Pair& pair, Tables& tables) {
   const double begin = cpu_seconds();
   const Result result = align(pair.source, pair.target, options);
   const Times times{0, 0, cpu_seconds() - begin, 0};
-  const double radius = options.keypoints.suppression_radius * result.voxel_size / 3.0;
+  const double r_k = options.keypoints.suppression_radius * result.voxel_size;
   for (const IterationRecord& record : result.iterations) {
-    const MatchQuality quality =
-        match_quality(record.correspondences, result.source_keypoints, result.target_keypoints, pair.truth, radius);
-    tables.iterations += iteration_row(pair, "default", record, quality, {}, record.target_from_source);
+    const auto quality = [&](double radius) {
+      return match_quality(record.correspondences, result.source_keypoints, result.target_keypoints, pair.truth, radius);
+    };
+    tables.iterations +=
+        iteration_row(pair, "default", record, quality(r_k / 3.0), quality(r_k), {}, record.target_from_source);
   }
   tables.registrations += registration_row(pair, "default", result, times);
 }

@@ -69,10 +69,10 @@ Transformation StagedLoop::to_world(const Transformation& local) const {
 }
 
 MatchQuality quality_of(const IterationRecord& record, const StagedLoop& loop, const Options& options,
-                        const Transformation& truth) {
+                        const Transformation& truth, double share) {
   Transformation local = truth;
   local.translation() = truth * loop.source().origin - loop.target().origin;
-  const double radius = options.keypoints.suppression_radius * loop.target().voxel_size / 3.0;
+  const double radius = share * options.keypoints.suppression_radius * loop.target().voxel_size;
   return match_quality(record.correspondences, loop.source_keypoints(), loop.target_keypoints(), local, radius);
 }
 

@@ -46,9 +46,9 @@ class StagedLoop {
   double preparation_s_ = 0;
 };
 
-/// Eq. 14 of one iteration; a true pair is closer than r_k / 3 at the true transformation.
+/// Eq. 14 of one iteration; a true pair is closer than `share` of r_k at the true transformation.
 MatchQuality quality_of(const IterationRecord& record, const StagedLoop& loop, const Options& options,
-                        const Transformation& truth);
+                        const Transformation& truth, double share = 1.0 / 3.0);
 
 Eigen::Vector3d centroid_of(PointView points);
 
