@@ -75,9 +75,13 @@ class Answers(BenchmarkTest):
         # The pair lies as it belongs: only if the scramble is folded into the truth rightly is the error tiny.
         self.assertLess(float(same["e_r_deg"]), 0.01)
         self.assertLess(float(same["e_t"]), 0.001)
-        for key in ["confidence", "overlap", "iterations", "source_keypoints", "target_keypoints", "voxel_size",
+        for key in ["confidence", "overlap", "precision", "recall", "iterations", "source_keypoints", "target_keypoints", "voxel_size",
                     "cpu_seconds", "wall_seconds", "peak_memory_bytes"]:
             self.assertGreater(float(good[key]), 0, key)
+        # Nearly 0 unless they are judged where the scramble has put the source.
+        self.assertGreater(float(same["precision"]), 0.6)
+        self.assertGreater(float(same["recall"]), 0.6)
+        self.assertEqual((none["precision"], unknown["precision"]), ("", ""))
         stages = dict(stage.split("=") for stage in good["stage_seconds"].split(";"))
         self.assertIn("read", stages)
         self.assertAlmostEqual(sum(map(float, stages.values())) / float(good["wall_seconds"]), 1, 1)
@@ -109,6 +113,40 @@ class Answers(BenchmarkTest):
         self.assertEqual([(row["name"], row["preset"]) for row in rows], [("odd", "default"), ("odd", "paper")])
         self.benchmark(GOOD + SELF + NONE, "--only", "s?lf", "--only", "o*")
         self.assertEqual([row["name"] for row in self.rows()], ["self", "odd"])
+
+
+class Export(BenchmarkTest):
+    def test_other_programs_get_the_same_pairs(self):
+        self.benchmark(GOOD + SELF + NONE + OPEN)
+        own = self.rows()
+        run = self.benchmark(GOOD + SELF + NONE + OPEN, "--export", "pairs")
+        self.assertEqual(run.stdout, f"4 of 4 cases are in {Path('pairs') / 'cases.csv'}\n")
+        self.igsp("benchmark", "pairs/cases.csv", "--no-scramble", "--out", "again.csv")
+        again = self.rows(self.folder / "again.csv")
+        for first, second in zip(own, again, strict=True):
+            for key in ["name", "group", "truth", "verdict", "success", "precision", "recall", "iterations", "voxel_size"]:
+                self.assertEqual(first[key], second[key], key)
+            for key in ["e_r_deg", "e_t", "centroid_displacement"]:  # up to the rounding of the truth's file
+                self.assertEqual(first[key] == "", second[key] == "")
+                self.assertAlmostEqual(float(first[key] or 0), float(second[key] or 0), 6)
+        moved = np.loadtxt(self.folder / "pairs/002_truth.txt")
+        self.assertGreater(np.abs(moved - np.eye(4)).max(), 0.5)  # the source did move
+
+    def test_selection_seed_and_mistakes(self):
+        def truth(*arguments):
+            self.benchmark(GOOD + SELF, "--only", "self", "--export", "pairs", *arguments)
+            return np.loadtxt(self.folder / "pairs/001_truth.txt")
+
+        self.assertGreater(np.abs(truth() - truth("--scramble", "8")).max(), 0.1)
+        np.testing.assert_array_equal(truth("--no-scramble"), np.eye(4))
+        run = self.benchmark(MISSING + SELF, "--export", "some", code=3)
+        self.assertEqual(run.stderr.count("\n"), 1)
+        self.assertIn("missing: left out: ", run.stderr)
+        self.assertEqual([row["name"] for row in self.rows(self.folder / "some/cases.csv")], ["self"])
+        self.refuses(SELF, "--export", "pairs", "--resume", code=2, saying="--export")
+        self.refuses(SELF, "--export", self.root, code=2, saying="--export")
+        (self.folder / "file").write_text("")
+        self.refuses(SELF, "--export", "file", code=3, saying="file")
 
 
 class Mistakes(BenchmarkTest):
@@ -167,6 +205,7 @@ class Resumption(BenchmarkTest):
             code, sent = self.interrupted(number=number)
             self.assertEqual(code, expected, sent)
             self.assertEqual("--resume" in sent, number == signal.SIGINT)
+            self.assertRegex(sent, r"1/3 +self +default +right +\S+ deg +\S+ +\S+ s")
             before = self.rows()
             self.assertEqual([row["name"] for row in before], ["self"])
             with open(self.out, "a") as file:

@@ -1,7 +1,9 @@
 """What the README shows works as printed: its igsp command lines run, its C++ snippets compile against the installed
-package and run, in the order of the page and in one folder. Every one must end with exit code 0.
+package and run, in the order of the page and in one folder. Every one must end with exit code 0. A CSV block is the file
+that the text before it names last; `igsp benchmark` must be right about every pair in it.
 """
 import argparse
+import csv
 import os
 import re
 import shutil
@@ -42,11 +44,31 @@ def commands(block):
     return [re.sub(r"\s+#.*", "", line) for line in lines if line.startswith("igsp ")]
 
 
+def write_lists(text, folder):
+    """Writes the CSV blocks under the names that the page gives them. Rows of all."""
+    rows = 0
+    for match in FENCE.finditer(text):
+        if match[1] == "csv":
+            name = re.findall(r"`(\w+\.csv)`", text[:match.start()])[-1]
+            (folder / name).write_text(match[2])
+            rows += len(match[2].splitlines()) - 1
+    return rows
+
+
+def check_results(path, expected):
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    if len(rows) != expected or any(row["success"] != "yes" for row in rows):
+        sys.exit(f"{path}: {expected} right answers expected:\n{path.read_text()}")
+
+
 def main():
     args = arguments()
     shutil.rmtree(args.work, ignore_errors=True)
     args.work.mkdir(parents=True)
-    blocks = FENCE.findall(args.readme.read_text())
+    text = args.readme.read_text()
+    blocks = FENCE.findall(text)
+    pairs = write_lists(text, args.work)
     programs = [text for language, text in blocks if language == "cpp"]
     lines = [line for language, text in blocks if language == "console" for line in commands(text)]
     if not programs or not lines:
@@ -64,6 +86,7 @@ def main():
     environment = dict(os.environ, PATH=f"{args.prefix / 'bin'}:{os.environ['PATH']}")
     for line in lines:
         run(line, shell=True, cwd=args.work, env=environment)
+    check_results(args.work / "results.csv", pairs)
     for name in names:
         run([build / name], cwd=args.work)
 

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <iostream>
 #include <optional>
 
@@ -31,6 +32,13 @@ struct AlignSettings {
   bool force = false, quiet = false, verbose = false;
   std::shared_ptr<OptionFlags> option_flags;
 };
+
+// Of all threads.
+double cpu_now_s() {
+  timespec cpu{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+  return static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec);
+}
 
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -71,9 +79,9 @@ std::vector<std::string> warnings_about(const CloudInput& source, const CloudInp
   constexpr double suspicious = 100.0;
   const double power = std::log10(source.bounds.diagonal() / target.bounds.diagonal());
   if (std::abs(power) >= std::log10(suspicious)) {
-    warnings.push_back(fmt::format(
-        "clouds in different units? Extents differ by a factor of about {:g}: source {:.4g}, target {:.4g}",
-        std::pow(10.0, std::round(std::abs(power))), source.bounds.diagonal(), target.bounds.diagonal()));
+    warnings.push_back(
+        fmt::format("clouds in different units? Extents differ by a factor of about {:g}: source {:.4g}, target {:.4g}",
+                    std::pow(10.0, std::round(std::abs(power))), source.bounds.diagonal(), target.bounds.diagonal()));
   }
   return warnings;
 }
@@ -141,9 +149,10 @@ int run_align(const AlignSettings& settings) {
   }
   const std::vector<std::string> warnings = warnings_about(source, target);
   stream_large_clouds(source, target, options.scale, progress);
-  const double read = now_s();
+  const double read = now_s(), cpu_before = cpu_now_s();
   Result result = initial ? align(source.points, target.points, *initial, options, progress)
                           : align(source.points, target.points, options, progress);
+  const double cpu_seconds = cpu_now_s() - cpu_before;
   stop_if_interrupted();
   bar.finish();
   result.source.points = source.total;
@@ -154,7 +163,7 @@ int run_align(const AlignSettings& settings) {
   }
   std::cout << answer_text(result, options.scale.voxel_size > 0.0, now_s() - start);
   if (settings.verbose) std::cout << details_text(result);
-  write_outputs(settings, result, align_report(result, source, target, warnings), source);
+  write_outputs(settings, result, align_report(result, source, target, cpu_seconds, warnings), source);
   return result.registered ? exit_registered : exit_not_registered;
 }
 
@@ -182,9 +191,10 @@ void add_align_command(CLI::App& app, Command& command) {
   align->add_option("--initial", settings->initial, "start from this target_from_source, 4x4 text, instead of a search")
       ->type_name("FILE");
   align->add_flag("--force", settings->force, "write -o and --transform also for an estimate that is not registered");
-  align->add_option("--max-points", settings->max_points,
-                    wrapped("a cloud with more points is streamed through the voxel filter instead of kept whole; "
-                            "default 20000000"))
+  align
+      ->add_option("--max-points", settings->max_points,
+                   wrapped("a cloud with more points is streamed through the voxel filter instead of kept whole; "
+                           "default 20000000"))
       ->type_name("INTEGER");
   CLI::Option* quiet = align->add_flag("--quiet", settings->quiet, "no progress and no warnings, only the answer");
   align->add_flag("--verbose", settings->verbose, "also a line per iteration and per stage")->excludes(quiet);

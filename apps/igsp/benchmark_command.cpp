@@ -9,6 +9,7 @@
 #include <thread>
 #include <tuple>
 
+#include "benchmark_export.hpp"
 #include "benchmark_results_file.hpp"
 #include "benchmark_run.hpp"
 #include "benchmark_summary.hpp"
@@ -29,7 +30,7 @@ namespace fs = std::filesystem;
 struct BenchmarkSettings {
   fs::path cases;
   fs::path out = "results.csv";
-  fs::path compare;  // empty: not wanted
+  fs::path compare, exported;  // empty: not wanted
   std::vector<std::string> presets = {"default"};
   std::vector<std::string> only;
   std::uint64_t scramble_seed = 7;
@@ -67,9 +68,13 @@ void check(const BenchmarkSettings& settings) {
   }
 }
 
+std::optional<std::uint64_t> seed_of(const BenchmarkSettings& settings) {
+  if (settings.no_scramble) return std::nullopt;
+  return settings.scramble_seed;
+}
+
 std::vector<BenchmarkTask> tasks_of(const BenchmarkSettings& settings) {
-  std::optional<std::uint64_t> seed;
-  if (!settings.no_scramble) seed = settings.scramble_seed;
+  const std::optional<std::uint64_t> seed = seed_of(settings);
   std::vector<BenchmarkTask> tasks;
   for (const BenchmarkCase& one : select_cases(read_cases(settings.cases), settings.only)) {
     for (const std::string& name : settings.presets) tasks.push_back({one, name, seed});
@@ -184,7 +189,19 @@ std::vector<BenchmarkRow> in_order(const std::vector<BenchmarkTask>& tasks, std:
   return ordered;
 }
 
+int run_export(const BenchmarkSettings& settings) {
+  const std::vector<BenchmarkCase> cases = select_cases(read_cases(settings.cases), settings.only);
+  const fs::path list = settings.exported / "cases.csv";
+  if (same_file(list, settings.cases)) {
+    throw InvalidArgument(fmt::format("--export would replace CASES, {}", settings.cases.string()));
+  }
+  const std::size_t written = export_cases(cases, seed_of(settings), settings.exported);
+  fmt::print("{} of {} cases are in {}\n", written, cases.size(), list.string());
+  return written == cases.size() ? exit_registered : exit_input_output;
+}
+
 int run_benchmark(const BenchmarkSettings& settings) {
+  if (!settings.exported.empty()) return run_export(settings);
   check(settings);
   const std::vector<BenchmarkTask> tasks = tasks_of(settings);
   std::vector<BenchmarkRow> old_rows;
@@ -214,7 +231,9 @@ constexpr const char* notes =
     "out.\n"
     "Every source is moved by a random rigid motion first, since files often lie as they belong; errors are given as "
     "if it\n"
-    "had not been. Each case runs on one thread with all points in memory. peak_memory_bytes is of the whole process, "
+    "had not been. precision and recall are those of the last iteration's correspondences, nearer than a third of the\n"
+    "suppression radius at the true transformation (Eq. 14). Each case runs on one thread with all points in memory. "
+    "peak_memory_bytes is of the whole process, "
     "with\n"
     "--jobs 1 since the case began.\n"
     "results.csv has a row per case and preset, written as it is finished; an earlier results.csv is replaced, or "
@@ -237,6 +256,12 @@ void add_benchmark_command(CLI::App& app, Command& command) {
                                        wrapped("seed of the random rigid motions of the sources; default 7"))
                           ->type_name("INTEGER");
   benchmark->add_flag("--no-scramble", settings->no_scramble, "leave the sources where they are")->excludes(seed);
+  CLI::Option* exported =
+      benchmark
+          ->add_option("--export", settings->exported,
+                       wrapped("align nothing: write the moved sources, targets, truths and their list, cases.csv, for "
+                               "another program"))
+          ->type_name("DIR");
   benchmark
       ->add_option("--preset", settings->presets,
                    wrapped(fmt::format("options to run with: {}; may be given several times; default default",
@@ -249,10 +274,14 @@ void add_benchmark_command(CLI::App& app, Command& command) {
                    wrapped("a group, or a pattern of names such as 'park/*'; may be given several times"))
       ->type_name("GROUP|GLOB")
       ->allow_extra_args(false);
-  benchmark->add_option("--out", settings->out, "rows, CSV; default results.csv")->type_name("FILE");
+  benchmark->add_option("--out", settings->out, "rows, CSV; default results.csv")
+      ->type_name("FILE")
+      ->excludes(exported);
   benchmark->add_option("--compare", settings->compare, "results of an earlier run: say what got better and worse")
-      ->type_name("FILE");
-  benchmark->add_flag("--resume", settings->resume, "keep the answered rows of --out, run the others");
+      ->type_name("FILE")
+      ->excludes(exported);
+  benchmark->add_flag("--resume", settings->resume, "keep the answered rows of --out, run the others")
+      ->excludes(exported);
   benchmark->add_flag("--quiet", settings->quiet, "no progress, only the summary");
   benchmark->footer(notes);
   benchmark->callback([settings, &command] { command = [settings] { return run_benchmark(*settings); }; });

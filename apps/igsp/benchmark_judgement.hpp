@@ -25,4 +25,8 @@ struct Judgement {
 Judgement judge_case(const BenchmarkCase& one, const Transformation& truth, const Eigen::Vector3d& source_centroid,
                      const Transformation& scrambled_from_source, const Result& result);
 
+/// The last iteration's correspondences against the truth with a third of r_k as the radius (Eq. 14). `truth` is that
+/// of the source as `result` saw it. Nothing if there was no iteration.
+std::optional<MatchQuality> judge_matches(const Result& result, const Transformation& truth);
+
 }  // namespace igsp::cli

@@ -18,7 +18,7 @@ struct ResultsColumn {
   std::variant<std::string Row::*, std::optional<bool> Row::*, std::optional<double> Row::*> field;
 };
 
-const std::array<ResultsColumn, 22> columns = {{{"name", &Row::name},
+const std::array<ResultsColumn, 24> columns = {{{"name", &Row::name},
                                                 {"group", &Row::group},
                                                 {"preset", &Row::preset},
                                                 {"scramble", &Row::scramble},
@@ -30,6 +30,8 @@ const std::array<ResultsColumn, 22> columns = {{{"name", &Row::name},
                                                 {"e_t", &Row::e_t},
                                                 {"centroid_displacement", &Row::centroid_displacement},
                                                 {"overlap", &Row::overlap},
+                                                {"precision", &Row::precision},
+                                                {"recall", &Row::recall},
                                                 {"iterations", &Row::iterations},
                                                 {"source_keypoints", &Row::source_keypoints},
                                                 {"target_keypoints", &Row::target_keypoints},

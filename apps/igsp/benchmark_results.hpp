@@ -17,6 +17,7 @@ struct BenchmarkRow {
   std::string verdict;   ///< "registered", "not_registered", empty after an error
   std::optional<bool> success;
   std::optional<double> confidence, e_r_deg, e_t, centroid_displacement, overlap;
+  std::optional<double> precision, recall;  ///< of the correspondences, Eq. 14
   std::optional<double> iterations, source_keypoints, target_keypoints, voxel_size;
   std::string stage_seconds;  ///< "read=0.012;scale=0.003;..."
   std::optional<double> cpu_seconds, wall_seconds, peak_memory_bytes;

@@ -7,10 +7,9 @@
 #include <fstream>
 #include <new>
 #include <numbers>
-#include <numeric>
 
 #include "benchmark_judgement.hpp"
-#include "cloud_input.hpp"
+#include "benchmark_pair.hpp"
 #include "igsp/align.hpp"
 #include "igsp/errors.hpp"
 #include "interrupt.hpp"
@@ -35,13 +34,6 @@ Seconds operator-(const Seconds& a, const Seconds& b) {
 }
 Seconds operator+(const Seconds& a, const Seconds& b) {
   return {a.wall + b.wall, a.cpu + b.cpu};
-}
-
-// Relative to the first point: survey coordinates lose nothing.
-Eigen::Vector3d centroid_of(PointView points) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& point : points) sum += point - points.front();
-  return points.front() + sum / static_cast<double>(points.size());
 }
 
 std::string stages_text(const Result& result, double read_seconds) {
@@ -69,32 +61,27 @@ void fill(BenchmarkRow& row, const Result& result, const Judgement& judgement) {
 
 void run_case(const BenchmarkTask& task, BenchmarkRow& row) {
   const auto go_on = [](const Progress&) { return !interrupted(); };
-  const std::size_t all_points = std::numeric_limits<std::size_t>::max();
   Options options = preset(task.preset);
   options.threads = 1;
-  const Transformation truth =
-      task.one.truth == Truth::known ? read_transformation(task.one.truth_file) : Transformation::Identity();
 
   const Seconds start = Seconds::now();
-  CloudInput source = read_cloud(task.one.source, all_points, "read source", go_on);
-  const CloudInput target = read_cloud(task.one.target, all_points, "read target", go_on);
+  BenchmarkPair pair = read_pair(task.one);
   const Seconds read = Seconds::now() - start;
-
-  const Eigen::Vector3d centroid = centroid_of(source.points);
-  Transformation motion = Transformation::Identity();
-  if (task.scramble_seed) {
-    motion = scramble(*task.scramble_seed, task.one.name, centre_of(source.bounds), source.bounds.diagonal());
-    for (Eigen::Vector3d& point : source.points) point = motion * point;
-  }
+  if (task.scramble_seed) scramble_source(pair, task.one, *task.scramble_seed);
 
   const Seconds before = Seconds::now();
-  const Result result = align(source.points, target.points, options, go_on);
+  const Result result = align(pair.source.points, pair.target.points, options, go_on);
   const Seconds spent = read + (Seconds::now() - before);
   row.cpu_seconds = spent.cpu;
   row.wall_seconds = spent.wall;
   row.peak_memory_bytes = peak_memory_bytes();
   row.stage_seconds = stages_text(result, read.wall);
-  fill(row, result, judge_case(task.one, truth, centroid, motion, result));
+  fill(row, result, judge_case(task.one, pair.truth, pair.source_centroid, pair.motion, result));
+  if (task.one.truth != Truth::known) return;
+  if (const auto quality = judge_matches(result, pair.target_from_scrambled())) {
+    row.precision = quality->precision();
+    row.recall = quality->recall();
+  }
 }
 
 }  // namespace

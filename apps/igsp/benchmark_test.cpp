@@ -198,6 +198,26 @@ TEST(JudgeCase, NoTruthNoOverlapNoEstimate) {
   EXPECT_FALSE(judge_case(one, still, centre, still, result).error);
 }
 
+TEST(JudgeMatches, TheLastIterationAtTheTruth) {
+  const Transformation truth = rotation_z(0.7, {5, 6, 7});
+  Result result;
+  result.voxel_size = 2.0;  // with r_k of 3 voxels the radius is 2
+  result.options.keypoints.suppression_radius = 3.0;
+  EXPECT_FALSE(judge_matches(result, truth));
+  result.source_keypoints = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {0, 0, 10}};
+  for (const Eigen::Vector3d& keypoint : result.source_keypoints) result.target_keypoints.push_back(truth * keypoint);
+  result.target_keypoints[1].z() += 1.9;  // still the same place
+  result.target_keypoints[3].z() += 2.1;  // no more
+  result.iterations.resize(2);
+  result.iterations[0].correspondences = {{0, 0}, {1, 1}, {2, 2}};
+  result.iterations[1].correspondences = {{0, 0}, {1, 2}, {3, 3}, {2, 2}};
+  const auto quality = judge_matches(result, truth);
+  ASSERT_TRUE(quality);
+  EXPECT_EQ(quality->precision(), 2.0 / 4.0);
+  EXPECT_EQ(quality->recall(), 2.0 / 3.0);
+  EXPECT_EQ(judge_matches(result, rotation_z(0.0, {99, 0, 0}))->precision(), 0.0);
+}
+
 BenchmarkRow row(const char* name, const char* truth, const char* verdict, std::optional<bool> success, double e_r) {
   BenchmarkRow one;
   one.name = name;
@@ -225,6 +245,14 @@ TEST_F(BenchmarkFiles, ResultsReadBackAsWritten) {
   EXPECT_EQ(rows[0].success, true);
   EXPECT_EQ(rows[0].overlap, std::nullopt);
   EXPECT_EQ(rows[0].reason, "two lines");
+}
+
+TEST_F(BenchmarkFiles, ResultsOfAnEarlierVersionLackColumnsAndThoseOfOthersHaveMore) {
+  const auto rows = read_results(file("name,preset,verdict,success,version\na,default,registered,yes,1.0\n"));
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_TRUE(rows[0].right_and_said());
+  EXPECT_EQ(rows[0].precision, std::nullopt);
+  EXPECT_EQ(rows[0].cpu_seconds, std::nullopt);
 }
 
 TEST_F(BenchmarkFiles, ALineThatWasCutOffIsLeftOut) {

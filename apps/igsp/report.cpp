@@ -13,8 +13,8 @@ Json to_json(const OptionValue& value) {
 }
 
 Json to_json(const CloudInput& input, const CloudSummary& summary) {
-  return {{"path", input.path.string()},   {"points", input.total},        {"dropped_points", input.dropped},
-          {"streamed", !input.whole()},    {"voxels", summary.voxels},     {"keypoints", summary.keypoints}};
+  return {{"path", input.path.string()}, {"points", input.total},    {"dropped_points", input.dropped},
+          {"streamed", !input.whole()},  {"voxels", summary.voxels}, {"keypoints", summary.keypoints}};
 }
 
 Json to_json(const IterationRecord& record) {
@@ -67,7 +67,9 @@ Json to_json(const Precision& precision) {
 
 }  // namespace
 
-Json to_json(const Transformation& transformation) { return rows(transformation.matrix()); }
+Json to_json(const Transformation& transformation) {
+  return rows(transformation.matrix());
+}
 
 Json to_json(const Options& options) {
   Json json = Json::object();
@@ -78,7 +80,7 @@ Json to_json(const Options& options) {
   return json;
 }
 
-Json align_report(const Result& result, const CloudInput& source, const CloudInput& target,
+Json align_report(const Result& result, const CloudInput& source, const CloudInput& target, double cpu_seconds,
                   const std::vector<std::string>& warnings) {
   Json json;
   json["version"] = version;
@@ -104,6 +106,7 @@ Json align_report(const Result& result, const CloudInput& source, const CloudInp
   for (const auto& [stage, seconds] : result.timings_s) {
     json["timings_s"][stage] = json["timings_s"].value(stage, 0.0) + seconds;  // a stage may run once per cloud
   }
+  json["cpu_seconds"] = cpu_seconds;
   json["peak_memory_bytes"] = peak_memory_bytes();
   json["warnings"] = warnings;
   json["options"] = to_json(result.options);

@@ -9,11 +9,13 @@
 //   geometric_consistency  FPFH, mutual nearest neighbours, GeometricConsistencyGrouping
 //   kfpcs                  ISS keypoints, KFPCSInitialAlignment
 // All but the first two are followed by point-to-plane ICP, which is a second answer. One JSON object goes to standard
-// output: the version of PCL, the seconds of both answers, and per answer a label ("" or "icp"), target_from_source
-// (4x4, rows), whether PCL says that it converged, and a score. The seconds are those of the registration from points
-// in memory, all threads together for the CPU; the second answer's include the first's. Lengths that PCL wants are
-// multiples of the voxel size V. Exit code: 0 whatever the answer, 2 for a wrong option, 3 for a file.
+// output: the version of PCL, the peak of the memory before the registration, and per answer its seconds, a label (""
+// or "icp"), target_from_source (4x4, rows), whether PCL says that it converged, and a score. The seconds are those of
+// the registration from points in memory, all threads together for the CPU; the second answer's include the first's.
+// Lengths that PCL wants are multiples of the voxel size V. Exit code: 0 whatever the answer, 2 for a wrong option, 3
+// for a file.
 #include <pcl/pcl_config.h>
+#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -40,6 +42,12 @@ struct Seconds {
             static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec)};
   }
 };
+
+std::size_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
 
 Eigen::Vector3d centroid_of(const igsp::Points& points) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -102,13 +110,16 @@ int main(int argc, char** argv) {
     const Cloud::Ptr moving = centred(source, source_centroid), fixed = centred(target, target_centroid);
     std::srand(seed);
     nlohmann::json answers = nlohmann::json::array();
+    const std::size_t memory_before = peak_memory_bytes();
     const Seconds start = Seconds::now();
     register_clouds(method, moving, fixed, settings, [&](const Answer& answer) {
       const Seconds now = Seconds::now();
       answers.push_back(
           to_json(answer, source_centroid, target_centroid, {now.wall - start.wall, now.cpu - start.cpu}));
     });
-    std::cout << nlohmann::json{{"version", PCL_VERSION_PRETTY}, {"answers", answers}}.dump() << "\n";
+    const nlohmann::json report = {
+        {"version", PCL_VERSION_PRETTY}, {"memory_before_bytes", memory_before}, {"answers", answers}};
+    std::cout << report.dump() << "\n";
   } catch (const std::exception& error) {
     std::cerr << "pcl_peer: " << error.what() << "\n";
     return 3;
