@@ -44,8 +44,8 @@ calibrate:
 	build/release/bin/igsp_calibrate --pairs 1000 --jobs $(jobs) --out docs/data/calibration.csv
 	/usr/bin/python3 benchmarks/calibration/reliability.py
 
-# What docs/paper/ shows: the paper's tables and figures, on the real scans in `scans` if they are there. About a quarter of
-# an hour of one core.
+# What docs/paper/ shows: the paper's tables and figures, with the real scans in `scans` if they are there. About ten
+# minutes of one core.
 scans ?= ../shared/data
 paper_data := docs/paper/data
 paper:

@@ -57,8 +57,8 @@ AssignmentCost assignment_cost(const KeypointSets& keypoints, const FeatureDista
   // A padding row costs T_cd whatever it takes.
   const std::int64_t energy = padded - static_cast<std::int64_t>(size - keypoints.source.size()) * limit;
   if (energy != sparse.energy) {
-    throw std::logic_error(fmt::format("the padded dense assignment has the energy {}, the sparse one {} units", energy,
-                                       sparse.energy));
+    throw std::logic_error(
+        fmt::format("the padded dense assignment has the energy {}, the sparse one {} units", energy, sparse.energy));
   }
   return cost;
 }

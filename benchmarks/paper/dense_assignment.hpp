@@ -7,8 +7,8 @@
 
 namespace igsp::paper {
 
-/// What an iteration costs on the same input: the exact sparse assignment, and the paper's own way, the padded matrix of
-/// Eq. 5 and Kuhn-Munkres on it. CPU seconds.
+/// What an iteration costs on the same input: the exact sparse assignment, and the paper's own way, the padded matrix
+/// of Eq. 5 and Kuhn-Munkres on it. CPU seconds.
 struct AssignmentCost {
   std::size_t edges = 0;
   double edges_s = 0, sparse_s = 0;  ///< candidate edges, assignment over them

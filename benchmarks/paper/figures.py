@@ -28,7 +28,7 @@ def legend_on_top(figure: plt.Figure, axis: plt.Axes) -> None:
 
 def draw_weights(rows: list[Row], path: Path) -> None:
     """Fig. 3 (a-b): Eq. 7 over the iterations for m = 2..16, and how many iterations a run takes."""
-    figure, (weights, counts) = plt.subplots(1, 2, figsize=(8.2, 3.2), layout="constrained")
+    figure, (weights, counts) = plt.subplots(1, 2, figsize=(9.2, 3.4), layout="constrained")
     k = np.arange(0, 26)
     for m, marker in ((2, "o"), (4, "s"), (8, "^"), (16, "D")):
         shade = str(0.68 - 0.17 * np.log2(m))
@@ -37,7 +37,7 @@ def draw_weights(rows: list[Row], path: Path) -> None:
     weights.plot([], [], "k-", label="$W_{fd}$")
     weights.plot([], [], "k--", label="$W_{ed}$")
     weights.set(xlabel="iteration k", ylabel="weight")
-    weights.legend(loc="center right", frameon=True, framealpha=0.9)
+    weights.legend(loc="center left", bbox_to_anchor=(1, 0.5))
     of_m = [row for row in rows if row["parameter"] == "m"]
     for dataset in in_order(of_m, "dataset"):
         values, means = mean_over_pairs([row for row in of_m if row["dataset"] == dataset], "value", "iterations")
@@ -116,8 +116,8 @@ def draw_growth(rows: list[Row], path: Path) -> None:
         dense = [row for row in run if row["dense_s"] != ""]
         axis.loglog([row["keypoints"] for row in run], [row["edges_s"] + row["sparse_s"] for row in run], "o" + look,
                     color="black", label=f"exact and sparse, k = {k}")
-        axis.loglog([row["keypoints"] for row in dense], [row["matrix_s"] + row["dense_s"] for row in dense], "s" + look,
-                    color="0.5", markerfacecolor="white", label=f"padded dense Kuhn-Munkres, k = {k}")
+        axis.loglog([row["keypoints"] for row in dense], [row["matrix_s"] + row["dense_s"] for row in dense],
+                    "s" + look, color="0.5", markerfacecolor="white", label=f"padded dense Kuhn-Munkres, k = {k}")
     sizes = np.array([500, 20000])
     for exponent, anchor in ((3, 0.03), (2, 0.0003)):
         axis.loglog(sizes, anchor * (sizes / sizes[0]) ** exponent, ":", color="0.6", linewidth=0.8)

@@ -49,7 +49,8 @@ struct SimulatedScene {
   double max_displacement;  // [m]
 };
 // At these distances several seeds of a hundred have the wanted overlap.
-constexpr std::array<SimulatedScene, 2> scenes{{{"Park", "park", 0.65, 14.0, 0.3}, {"Indoor", "indoor", 0.70, 4.0, 0.1}}};
+constexpr std::array<SimulatedScene, 2> scenes{
+    {{"Park", "park", 0.65, 14.0, 0.3}, {"Indoor", "indoor", 0.70, 4.0, 0.1}}};
 constexpr int pairs_per_scene = 4, points_per_scan = 60000;
 constexpr double overlap_tolerance = 0.03, overlap_radius = 2.0;  // [voxels]
 
@@ -77,7 +78,8 @@ class PairWriter {
   void finish() const {
     cli::write_text(folder_ / "cases.csv",
                     "name,group,source,target,truth,max_rotation_error_deg,max_translation_error_m,overlap,"
-                    "source_points,target_points,origin\n" + rows_);
+                    "source_points,target_points,origin\n" +
+                        rows_);
   }
 
  private:
@@ -100,13 +102,18 @@ void add_simulated(const SimulatedScene& scene, PairWriter& writer) {
     options.station_distance = scene.station_distance;
     options.seed = seed;
     std::vector<SimulatedScan> scans = simulate(scene.scene, options);
-    Pair pair{fmt::format("{}/{}", scene.scene, seed), scene.dataset, std::move(scans[1].points),
-              std::move(scans[0].points), scans[0].world_from_scanner.inverse() * scans[1].world_from_scanner, 2.0,
+    Pair pair{fmt::format("{}/{}", scene.scene, seed),
+              scene.dataset,
+              std::move(scans[1].points),
+              std::move(scans[0].points),
+              scans[0].world_from_scanner.inverse() * scans[1].world_from_scanner,
+              2.0,
               scene.max_displacement};
     const double overlap = overlap_of(pair);
     if (std::abs(overlap - scene.overlap) > overlap_tolerance) continue;
-    writer.add(pair, overlap, fmt::format("igsp simulate {} --points {} --station-distance {} --seed {}", scene.scene,
-                                          points_per_scan, scene.station_distance, seed));
+    writer.add(pair, overlap,
+               fmt::format("igsp simulate {} --points {} --station-distance {} --seed {}", scene.scene, points_per_scan,
+                           scene.station_distance, seed));
     ++found;
   }
 }
@@ -120,8 +127,13 @@ void add_real(const fs::path& scans, PairWriter& writer) {
     if (one == cases.end() || !overlap_column) {
       throw FileError(fmt::format("{}: no case {} with its overlap", table.path.string(), wanted.name));
     }
-    const Pair pair{wanted.name, wanted.dataset, read_points(one->source).points, read_points(one->target).points,
-                    read_transformation(one->truth_file), one->max_rotation_error_deg, one->max_displacement};
+    const Pair pair{wanted.name,
+                    wanted.dataset,
+                    read_points(one->source).points,
+                    read_points(one->target).points,
+                    read_transformation(one->truth_file),
+                    one->max_rotation_error_deg,
+                    one->max_displacement};
     const auto& fields = table.records[static_cast<std::size_t>(one - cases.begin())].fields;
     writer.add(pair, std::stod(fields[*overlap_column]), wanted.name);
   }

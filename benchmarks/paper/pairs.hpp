@@ -20,7 +20,8 @@ struct Pair {
 
 /// Writes the pairs of the evaluation into `folder`: clouds, true relations and cases.csv, as `igsp benchmark` reads
 /// it. Four pairs of each data set: simulated Park at 65 % and Indoor at 70 % overlap; and from `scans`, if that folder
-/// has a cases.csv, the Stanford pairs of about 30 %, others of about 80 %, and facade pairs of about 65 %. Every source is moved at random.
+/// has a cases.csv, the Stanford pairs of about 30 %, others of about 80 %, and facade pairs of about 65 %. Every
+/// source is moved at random.
 void write_pairs(const std::filesystem::path& scans, const std::filesystem::path& folder);
 
 std::vector<Pair> read_pairs(const std::filesystem::path& folder);

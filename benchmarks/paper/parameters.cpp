@@ -32,8 +32,7 @@ std::string row(const Pair& pair, const StagedLoop& loop, const Sweep& sweep, do
     first = quality_of(outcome.iterations.front(), loop, options, pair.truth);
     last = quality_of(outcome.iterations.back(), loop, options, pair.truth);
   }
-  const PoseError error =
-      pose_error(loop.to_world(outcome.target_from_source), pair.truth, centroid_of(pair.source));
+  const PoseError error = pose_error(loop.to_world(outcome.target_from_source), pair.truth, centroid_of(pair.source));
   return fmt::format("{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:d},{:.6g}\n", pair.name, pair.dataset, sweep.name,
                      value, outcome.iterations.size(), to_string(outcome.termination), first.precision(),
                      first.recall(), last.precision(), last.recall(), outcome.has_estimate && is_right(error, pair),
@@ -43,6 +42,7 @@ std::string row(const Pair& pair, const StagedLoop& loop, const Sweep& sweep, do
 }  // namespace
 
 void write_parameters(const std::filesystem::path& pairs, const std::filesystem::path& data) {
+  cli::check_writable(data / "parameters.csv");
   std::string table =
       "pair,dataset,parameter,value,iterations,termination,first_precision,first_recall,precision,recall,right,"
       "rotation_error_deg\n";

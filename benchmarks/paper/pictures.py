@@ -84,7 +84,8 @@ def draw_row(line: np.ndarray, view: View, pair: Row, folder: Path, run: list[Ro
         low, high = (np.percentile(view.per_metre * whole_target, share, axis=0) for share in (2, 98))
         room = 0.25 * (high - low).max()
         axis.set(aspect="equal", xlim=(low[view.axes[0]] - room, high[view.axes[0]] + room),
-                 ylim=(low[view.axes[1]] - room, high[view.axes[1]] + room), xlabel=f"{'xyz'[view.axes[0]]} [{view.unit}]")
+                 ylim=(low[view.axes[1]] - room, high[view.axes[1]] + room),
+                 xlabel=f"{'xyz'[view.axes[0]]} [{view.unit}]")
         axis.tick_params(labelsize=7)
         axis.xaxis.label.set_size(8)
         axis.grid(False)

@@ -21,7 +21,8 @@ constexpr const char* registration_header =
     "dense_iteration_s,rotation_error_deg,translation_error_m,centroid_displacement_m,right,registered,confidence,"
     "termination\n";
 constexpr const char* iteration_header =
-    "pair,dataset,preset,k,w_fd,w_ed,t_cd,candidate_edges,matches,correct,possible,precision,recall,precision_within_r_k,energy,edges_s,"
+    "pair,dataset,preset,k,w_fd,w_ed,t_cd,candidate_edges,matches,correct,possible,precision,recall,precision_within_r_"
+    "k,energy,edges_s,"
     "sparse_s,matrix_s,dense_s,rotation_error_deg,centroid_displacement_m,"
     "r00,r01,r02,t0,r10,r11,r12,t1,r20,r21,r22,t2\n";
 
@@ -117,7 +118,8 @@ void add_default(const Pair& pair, Tables& tables) {
   const double r_k = options.keypoints.suppression_radius * result.voxel_size;
   for (const IterationRecord& record : result.iterations) {
     const auto quality = [&](double radius) {
-      return match_quality(record.correspondences, result.source_keypoints, result.target_keypoints, pair.truth, radius);
+      return match_quality(record.correspondences, result.source_keypoints, result.target_keypoints, pair.truth,
+                           radius);
     };
     tables.iterations +=
         iteration_row(pair, "default", record, quality(r_k / 3.0), quality(r_k), {}, record.target_from_source);
@@ -128,6 +130,7 @@ void add_default(const Pair& pair, Tables& tables) {
 }  // namespace
 
 void write_registrations(const std::filesystem::path& pairs, const std::filesystem::path& data) {
+  cli::check_writable(data / "registrations.csv");
   Tables tables;
   for (const Pair& pair : read_pairs(pairs)) {
     std::cerr << pair.name << "\n";

@@ -11,12 +11,16 @@ from __future__ import annotations
 import argparse
 import json
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 
-from clouds import displacement, read_points, rotation_angle_deg
+from clouds import read_points
 from rows import Row, read_rows, write_rows
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "peers"))
+from metrics import is_right, pose_errors  # noqa: E402
 
 METHODS = {
     "icp": ["icp", "--as-given"],
@@ -28,10 +32,24 @@ METHODS = {
 }
 
 
-def run(program: Path, arguments: list[str]) -> dict:
-    """The program's JSON; a crash of PCL is an answer too."""
+def run(program: Path, arguments: list[str]) -> list[dict]:
+    """The program's answers; when PCL crashes, one without a pose."""
     done = subprocess.run([program, *arguments], capture_output=True, text=True)
-    return json.loads(done.stdout) if done.returncode == 0 else {"answers": [], "error": done.stderr.strip()}
+    if done.returncode == 0:
+        return json.loads(done.stdout)["answers"]
+    print(f"{' '.join(arguments)}: exit code {done.returncode}: {done.stderr.strip()}", file=sys.stderr)
+    return [{"label": "", "target_from_source": np.full((4, 4), np.nan), "cpu_seconds": np.nan}]
+
+
+def judged(estimate: np.ndarray, truth: np.ndarray, centroid: np.ndarray, pair: Row) -> Row:
+    """The errors of 4x4 `estimate` as columns; NaN and wrong if it is no rigid motion."""
+    try:
+        errors = pose_errors(estimate, truth, centroid)
+    except ValueError:
+        errors = dict.fromkeys(("e_r_deg", "e_t", "centroid_displacement"), np.nan)
+    return {"rotation_error_deg": f"{errors['e_r_deg']:.6g}", "translation_error_m": f"{errors['e_t']:.6g}",
+            "centroid_displacement_m": f"{errors['centroid_displacement']:.6g}",
+            "right": int(is_right(errors, pair["max_rotation_error_deg"], pair["max_translation_error_m"]))}
 
 
 def rows_of(pair: Row, folder: Path, voxel_size: float, program: Path, time_limit_s: int) -> list[Row]:
@@ -40,19 +58,13 @@ def rows_of(pair: Row, folder: Path, voxel_size: float, program: Path, time_limi
     centroid = read_points(source).mean(axis=0)
     rows = []
     for method, arguments in METHODS.items():
-        answers = run(program, [*arguments, str(source), str(target), "--voxel-size", str(voxel_size), "--threads", "1",
-                                "--overlap", str(pair["overlap"]), "--time-limit", str(time_limit_s)])
-        for answer in answers["answers"] or [{"label": "", "target_from_source": np.full((4, 4), np.nan)}]:
-            estimate = np.array(answer["target_from_source"])
-            delta = estimate @ np.linalg.inv(truth)
-            rotation_deg, moved = rotation_angle_deg(delta[:3, :3]), displacement(estimate, truth, centroid)
-            right = rotation_deg < pair["max_rotation_error_deg"] and moved < pair["max_translation_error_m"]
+        for answer in run(program, [*arguments, str(source), str(target), "--voxel-size", str(voxel_size),
+                                    "--threads", "1", "--overlap", str(pair["overlap"]),
+                                    "--time-limit", str(time_limit_s)]):
             rows.append({"pair": pair["name"], "dataset": pair["group"], "method": method, "after": answer["label"],
-                         "total_s": f"{answer.get('cpu_seconds', np.nan):.4g}",
-                         "rotation_error_deg": f"{rotation_deg:.6g}",
-                         "translation_error_m": f"{np.linalg.norm(delta[:3, 3]):.6g}",
-                         "centroid_displacement_m": f"{moved:.6g}", "right": int(right)})
-            print(f"{pair['name']} {method} {answer['label']}: {rows[-1]['total_s']} s, {rotation_deg:.3g} deg", flush=True)
+                         "total_s": f"{answer['cpu_seconds']:.4g}",
+                         **judged(np.array(answer["target_from_source"]), truth, centroid, pair)})
+            print(*rows[-1].values(), flush=True)
     return rows
 
 

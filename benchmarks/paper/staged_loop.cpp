@@ -46,7 +46,7 @@ void StagedLoop::prepare() {
 }
 
 LoopOutcome StagedLoop::run(const Options& options) const {
-  const LoopInput input{source_keypoints_, target_keypoints_,    source_variants_,
+  const LoopInput input{source_keypoints_, target_keypoints_,   source_variants_,
                         variants,          target_.descriptors, target_.voxel_size};
   LoopSchedule schedule;
   schedule.max_iterations = options.convergence.max_iterations;

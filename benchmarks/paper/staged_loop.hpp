@@ -12,7 +12,9 @@
 namespace igsp::paper {
 
 /// CPU time of the process: with one thread, what the paper's seconds mean, whatever else the machine does.
-inline double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+inline double cpu_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
 
 /// The paper's preset on one thread.
 Options paper_options();
