@@ -53,8 +53,11 @@ def mean(rows: list[Row], name: str) -> float:
 
 
 def pairs_table(pairs: list[Row]) -> str:
-    lines = [[row["group"], row["name"], f"{row['source_points']:,} / {row['target_points']:,}",
-              f"{row['overlap']:.2f}", f"`{row['origin']}`" if row["origin"].startswith("igsp") else "real scans"] for row in pairs]
+    lines = []
+    for row in pairs:
+        origin = f"`{row['origin']}`" if row["origin"].startswith("igsp") else "real scans"
+        lines.append([row["group"], row["name"], f"{row['source_points']:,} / {row['target_points']:,}",
+                      f"{row['overlap']:.2f}", origin])
     return markdown(["data set", "pair (source--target)", "points", "overlap", "from"], lines)
 
 
