@@ -4,20 +4,17 @@
 
 namespace igsp {
 
-double geman_mcclure_weight(double residual, double scale) {
-  const double squared = (residual / scale) * (residual / scale);
-  if (squared > 9.0) return 0.0;
-  return 1.0 / ((1.0 + squared) * (1.0 + squared));
-}
-
 std::optional<Transformation> robust_fit(std::span<const PointPair> pairs, const Transformation& initial,
                                          std::span<const double> scales, int degrees_of_freedom) {
-  std::vector<PointPair> weighted(pairs.begin(), pairs.end());
+  std::vector<PointPair> weighted;
+  weighted.reserve(pairs.size());
   Transformation current = initial;
   for (const double scale : scales) {
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const double residual = (pairs[i].target - current * pairs[i].source).norm();
-      weighted[i].weight = pairs[i].weight * geman_mcclure_weight(residual, scale);
+    weighted.clear();
+    for (const PointPair& pair : pairs) {
+      const double weight =
+          pair.weight * geman_mcclure_weight((pair.target - current * pair.source).squaredNorm(), scale * scale);
+      if (weight > 0) weighted.push_back({pair.source, pair.target, weight});
     }
     const auto fit = rigid_fit(weighted, degrees_of_freedom);
     if (!fit) return std::nullopt;

@@ -13,12 +13,11 @@ namespace {
 using testing::Random;
 
 TEST(GemanMcClure, WeightsResiduals) {
-  EXPECT_EQ(geman_mcclure_weight(0, 2), 1);
-  EXPECT_DOUBLE_EQ(geman_mcclure_weight(2, 2), 0.25);  // 1 / (1 + 1)^2
-  EXPECT_DOUBLE_EQ(geman_mcclure_weight(-2, 2), 0.25);
-  EXPECT_DOUBLE_EQ(geman_mcclure_weight(4, 2), 0.04);
-  EXPECT_GT(geman_mcclure_weight(5.999, 2), 0);
-  EXPECT_EQ(geman_mcclure_weight(6.001, 2), 0);
+  EXPECT_EQ(geman_mcclure_weight(0, 4), 1);
+  EXPECT_DOUBLE_EQ(geman_mcclure_weight(4, 4), 0.25);  // 1 / (1 + 1)^2
+  EXPECT_DOUBLE_EQ(geman_mcclure_weight(16, 4), 0.04);
+  EXPECT_GT(geman_mcclure_weight(35.99, 4), 0);
+  EXPECT_EQ(geman_mcclure_weight(36.01, 4), 0);
 }
 
 /// Small motions, so that the identity is a start from which the truth can be seen.

@@ -23,6 +23,7 @@ constexpr int last_iterations = 20;
 constexpr std::array<double, 6> coarse_radii{3, 3, 2, 2, 1.5, 1.5};
 constexpr std::array<double, 5> fine_radii{3, 2, 1.5, 1.5, 1};
 constexpr std::size_t coarse_points = 1500;
+constexpr std::size_t early_fine_points = 2000;
 constexpr std::size_t fine_points = 8000;
 constexpr std::size_t max_last_steps = 10;
 constexpr std::size_t enough_agreeing = 15;
@@ -91,7 +92,7 @@ LoopOutcome hybrid_loop(CommonFrame& frame, const Transformation& initial, int i
 // A short refinement on the voxel centroids, before hypotheses are compared.
 Transformation settle(Surface& source, Surface& target, const Transformation& initial, double voxel_size,
                       const Options& options) {
-  return refine_point_to_plane(source, target, initial, {coarse_points, coarse_radii, 0, voxel_size, options.degrees_of_freedom});
+  return refine_point_to_plane(source, target, initial, {coarse_points, coarse_points, coarse_radii, 0, voxel_size, options.degrees_of_freedom});
 }
 
 // Down to the noise of the scanner, on the finer voxels.
@@ -101,7 +102,7 @@ void refine(const CommonFrame& frame, const Options& options, StageClock& clock,
   if (options.refinement.enabled) {
     outcome.target_from_source = refine_point_to_plane(
         surfaces.source, surfaces.target, outcome.target_from_source,
-        {fine_points, fine_radii, max_last_steps, frame.target().features.voxel_size, options.degrees_of_freedom});
+        {early_fine_points, fine_points, fine_radii, max_last_steps, frame.target().features.voxel_size, options.degrees_of_freedom});
   }
   outcome.precision = precision_at(surfaces, outcome.target_from_source);
 }

@@ -30,7 +30,7 @@ struct NormalEquations {
     if (std::abs(cosine) < min_normal_cosine) return;
     const Eigen::Vector3d n = (q_normal + std::copysign(1.0, cosine) * p_normal).normalized();
     const double residual = n.dot(p - q);
-    const double weight = geman_mcclure_weight(residual, scale);
+    const double weight = geman_mcclure_weight(residual * residual, scale * scale);
     Vector6 jacobian;
     jacobian << (p - centre).cross(n), n;
     information += weight * jacobian * jacobian.transpose();
@@ -88,8 +88,10 @@ Transformation refine_point_to_plane(Surface& source, Surface& target, const Tra
   Transformation pose = initial;
   const std::size_t steps = options.radii.size() + options.max_last_steps;
   for (std::size_t k = 0; k < steps; ++k) {
-    const double radius = options.radii[std::min(k, options.radii.size() - 1)] * options.voxel_size;
-    NormalEquations equations = linearise(source, target, pose, radius, options.max_points);
+    const bool is_early = k + 1 < options.radii.size();
+    const double radius = options.radii[is_early ? k : options.radii.size() - 1] * options.voxel_size;
+    NormalEquations equations =
+        linearise(source, target, pose, radius, is_early ? options.early_points : options.max_points);
     if (equations.pairs < min_pairs) break;
     if (options.degrees_of_freedom == 4) fix_tilt(equations);
     const Eigen::LDLT<Matrix6> solver(equations.information);
@@ -97,7 +99,7 @@ Transformation refine_point_to_plane(Surface& source, Surface& target, const Tra
     const Vector6 step = solver.solve(-equations.gradient);
     pose = motion(step, equations.centre) * pose;
     pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
-    if (k + 1 >= options.radii.size() && is_small(step, options.voxel_size)) break;
+    if (!is_early && is_small(step, options.voxel_size)) break;
   }
   return pose;
 }

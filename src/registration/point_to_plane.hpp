@@ -32,7 +32,8 @@ class Surface {
 };
 
 struct PointToPlaneOptions {
-  std::size_t max_points = 4000;  ///< of the source, evenly strided
+  std::size_t early_points = 0;   ///< of the source, evenly strided, until the last radius
+  std::size_t max_points = 0;     ///< the same at the last radius
   std::span<const double> radii;  ///< one Gauss-Newton step each: search radius [voxels]
   std::size_t max_last_steps = 0;  ///< further steps at the last radius, until they are small
   double voxel_size = 0;
@@ -51,7 +52,7 @@ struct Linearisation {
   Eigen::Vector3d centre;
   Eigen::Matrix<double, 6, 6> hessian;
   double residual_variance = 0;  ///< [units of the cloud ^ 2]
-  std::size_t pairs = 0;         
+  std::size_t pairs = 0;
 };
 Linearisation linearise_at(Surface& source, Surface& target, const Transformation& pose, double radius,
                            std::size_t max_points);

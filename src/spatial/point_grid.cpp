@@ -5,7 +5,9 @@
 namespace igsp {
 namespace {
 
-constexpr double max_cells = 4e6;  // 16 MB of cell starts; sparse clouds get larger cells instead of more memory
+// Sparse clouds get larger cells instead of more of them: empty cells cost memory and the time to fill it.
+constexpr double max_cells_per_point = 20;
+constexpr double min_max_cells = 1e5;
 
 }  // namespace
 
@@ -18,8 +20,10 @@ PointGrid::PointGrid(PointView points, double wanted_cell_size) : index(points.s
   }
   const Eigen::Vector3d extent = max - min;
   double size = wanted_cell_size;
+  const double max_cells = std::max(min_max_cells, max_cells_per_point * static_cast<double>(points.size()));
   while (((extent / size).array().floor() + 1).prod() > max_cells) size *= 1.26;
   cell_size = static_cast<float>(size);
+  inverse_cell_size = 1.0f / cell_size;
   origin = min.cast<float>();
   for (int axis = 0; axis < 3; ++axis) cells[axis] = static_cast<int>(extent[axis] / size) + 1;
 
@@ -48,8 +52,8 @@ PointGrid::PointGrid(PointView points, double wanted_cell_size) : index(points.s
 std::array<int, 3> PointGrid::cell_of(const Eigen::Vector3f& point) const {
   std::array<int, 3> cell;
   for (int axis = 0; axis < 3; ++axis) {
-    const float c = std::floor((point[axis] - origin[axis]) / cell_size);
-    cell[axis] = static_cast<int>(std::clamp(c, 0.0f, static_cast<float>(cells[axis] - 1)));
+    const float c = (point[axis] - origin[axis]) * inverse_cell_size;
+    cell[axis] = static_cast<int>(std::clamp(c, 0.0f, static_cast<float>(cells[axis] - 1)));  // truncated
   }
   return cell;
 }

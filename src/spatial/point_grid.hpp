@@ -57,6 +57,7 @@ class PointGrid {
 
   Eigen::Vector3f origin;  ///< corner of cell (0, 0, 0)
   float cell_size;
+  float inverse_cell_size;
   std::array<int, 3> cells;
   std::vector<std::uint32_t> start;  ///< first sorted position of every cell, one more at the end
   std::vector<std::uint32_t> index;  ///< original index of every sorted position
