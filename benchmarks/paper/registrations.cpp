@@ -23,7 +23,7 @@ constexpr const char* registration_header =
 constexpr const char* iteration_header =
     "pair,dataset,preset,k,w_fd,w_ed,t_cd,candidate_edges,matches,correct,possible,precision,recall,precision_within_r_"
     "k,energy,edges_s,"
-    "sparse_s,matrix_s,dense_s,rotation_error_deg,centroid_displacement_m,"
+    "sparse_s,matrix_s,dense_s,rotation_step_deg,translation_step_m,rotation_error_deg,centroid_displacement_m,"
     "r00,r01,r02,t0,r10,r11,r12,t1,r20,r21,r22,t2\n";
 
 struct Tables {
@@ -53,8 +53,9 @@ std::string iteration_row(const Pair& pair, std::string_view preset, const Itera
                                 pair.dataset, preset, record.k, record.w_fd, record.w_ed, record.t_cd,
                                 record.candidate_edges, record.matches, quality.correct, quality.possible,
                                 quality.precision(), quality.recall(), within_r_k.precision(), record.energy) +
-                    fmt::format("{:.4g},{:.4g},{:.4g},{:.4g},{:.6g},{:.6g}", cost.edges_s, cost.sparse_s, cost.matrix_s,
-                                cost.dense_s, error.rotation_rad / degree, error.centroid_displacement);
+                    fmt::format("{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.6g},{:.6g}", cost.edges_s, cost.sparse_s,
+                                cost.matrix_s, cost.dense_s, record.rotation_step_rad / degree, record.translation_step,
+                                error.rotation_rad / degree, error.centroid_displacement);
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 4; ++j) row += fmt::format(",{:.17g}", target_from_source.matrix()(i, j));
   }

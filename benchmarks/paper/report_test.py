@@ -69,6 +69,12 @@ class Tables(unittest.TestCase):
         line = tables_of(report.errors_table([registration(right=0)], [], "Park"))[0][2]
         self.assertEqual(line[1:5], ["0 of 1", "/", "/", "/"])
 
+    def test_a_run_has_settled_when_both_steps_are_small(self):
+        steps = [(1.0, 0.001), (0.01, 0.9), (0.04, 0.004), (0.0, 0.0)]
+        run = [{"rotation_step_deg": rotation, "translation_step_m": translation} for rotation, translation in steps]
+        self.assertEqual(report.settled_after(run, 0.1), 3)
+        self.assertEqual(report.settled_after(run[:2], 0.1), 2)
+
     def test_a_ragged_table_is_refused(self):
         with self.assertRaises(ValueError):
             report.markdown(["a", "b"], [["1", "2"], ["3"]])
