@@ -19,8 +19,12 @@ int main(int argc, char** argv) {
   CLI::App* parameters = app.add_subcommand("parameters", "Fig. 3");
   CLI::App* growth = app.add_subcommand("growth", "cost of an iteration over the number of keypoints");
   write_pairs->add_option("--scans", scans, "folder of real scans with their cases.csv")->required();
-  for (CLI::App* command : {write_pairs, registrations, parameters}) command->add_option("--pairs", pairs)->required();
-  for (CLI::App* command : {registrations, parameters, growth}) command->add_option("--data", data)->required();
+  for (CLI::App* command : {write_pairs, registrations, parameters}) {
+    command->add_option("--pairs", pairs, "folder of the pairs")->required();
+  }
+  for (CLI::App* command : {registrations, parameters, growth}) {
+    command->add_option("--data", data, "folder for the CSV files")->required();
+  }
   CLI11_PARSE(app, argc, argv);
   try {
     if (*write_pairs) igsp::paper::write_pairs(scans, pairs);
