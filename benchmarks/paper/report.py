@@ -84,8 +84,8 @@ def times_table(registrations: list[Row], iterations: list[Row]) -> str:
         settled = np.mean([settled_after(runs[row["pair"]], row["voxel_size"]) for row in rows])
         lines.append([dataset, *theirs, f"{mean(rows, 'source_keypoints'):.0f} x {mean(rows, 'target_keypoints'):.0f}",
                       figure(mean(rows, "preparation_s")), f"{1000 * mean(rows, 'iteration_s'):.2f}",
-                      f"{mean(rows, 'iterations'):.0f}", f"{settled:.0f}", figure(mean(rows, "total_s")), f"{1000 * dense:.1f}",
-                      figure(total), f"{dense / mean(rows, 'iteration_s'):.0f}"])
+                      f"{mean(rows, 'iterations'):.0f}", f"{settled:.0f}", figure(mean(rows, "total_s")),
+                      f"{1000 * dense:.1f}", figure(total), f"{dense / mean(rows, 'iteration_s'):.0f}"])
     return markdown(["data set", "paper: T1 [s]", "T2 [s]", "k", "T [s]", "igsp: keypoints", "T1 [s]", "T2 [ms]", "k",
                      "settled after", "T [s]", "dense: T2 [ms]", "T [s]", "T2 to igsp's"], lines)
 
