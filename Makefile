@@ -4,7 +4,7 @@ jobs := $(shell nproc)
 igsp := build/release/bin/igsp
 demo := build/demo
 
-.PHONY: all build setup demo test bench calibrate paper asan tsan fuzz format install clean
+.PHONY: all build setup demo test bench bench-peers calibrate paper asan tsan fuzz format install clean
 
 all: build
 
@@ -35,6 +35,22 @@ bench: setup
 	cmake --preset release -DIGSP_BUILD_BENCHMARKS=ON
 	cmake --build --preset release
 	set -e; for benchmark in build/release/bin/*_benchmark; do $$benchmark; done
+
+# igsp and other programs on the same pairs: docs/benchmarks-peers.md, its rows and pictures. Hours for all of it; what is
+# left of an interrupted run is done by the next. A part of it: peers_options="--every 4 --minutes 50", "--only bunny".
+peers_cases ?= ../shared/data/cases.csv
+peers_options ?=
+peers_python := build/peers-venv/bin/python
+bench-peers:
+	@scripts/setup.sh libpcl-dev python3-venv libgl1 libgomp1 libx11-6
+	cmake --preset release -DIGSP_BUILD_PEERS=ON
+	cmake --build --preset release --target igsp_app pcl_peer
+	test -x $(peers_python) || /usr/bin/python3 -m venv build/peers-venv
+	grep -v '^#' benchmarks/peers/requirements.txt | while read -r package; do \
+	  $(peers_python) -m pip install --quiet "$$package" || echo "cannot be installed: $$package"; done
+	$(peers_python) benchmarks/peers/bench_peers.py --cases $(peers_cases) $(peers_options)
+	$(peers_python) benchmarks/peers/summary.py
+	$(peers_python) benchmarks/peers/plots.py
 
 # What docs/verdict.md shows: the rows, the numbers, the plots. About ten minutes of one core.
 calibrate:

@@ -1,6 +1,6 @@
 """What the README shows works as printed: its igsp command lines run, its C++ snippets compile against the installed
-package and run, in the order of the page and in one folder. Every one must end with exit code 0. A CSV block is the file
-that the text before it names last; `igsp benchmark` must be right about every pair in it.
+package and run, in the order of the page and in one folder. Every one must end with exit code 0. A CSV block is the
+file that the text before it names last; `igsp benchmark` must be right about every pair in it.
 """
 import argparse
 import csv

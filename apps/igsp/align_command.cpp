@@ -79,9 +79,9 @@ std::vector<std::string> warnings_about(const CloudInput& source, const CloudInp
   constexpr double suspicious = 100.0;
   const double power = std::log10(source.bounds.diagonal() / target.bounds.diagonal());
   if (std::abs(power) >= std::log10(suspicious)) {
-    warnings.push_back(
-        fmt::format("clouds in different units? Extents differ by a factor of about {:g}: source {:.4g}, target {:.4g}",
-                    std::pow(10.0, std::round(std::abs(power))), source.bounds.diagonal(), target.bounds.diagonal()));
+    warnings.push_back(fmt::format(
+        "clouds in different units? Extents differ by a factor of about {:g}: source {:.4g}, target {:.4g}",
+        std::pow(10.0, std::round(std::abs(power))), source.bounds.diagonal(), target.bounds.diagonal()));
   }
   return warnings;
 }
@@ -191,10 +191,9 @@ void add_align_command(CLI::App& app, Command& command) {
   align->add_option("--initial", settings->initial, "start from this target_from_source, 4x4 text, instead of a search")
       ->type_name("FILE");
   align->add_flag("--force", settings->force, "write -o and --transform also for an estimate that is not registered");
-  align
-      ->add_option("--max-points", settings->max_points,
-                   wrapped("a cloud with more points is streamed through the voxel filter instead of kept whole; "
-                           "default 20000000"))
+  align->add_option("--max-points", settings->max_points,
+                    wrapped("a cloud with more points is streamed through the voxel filter instead of kept whole; "
+                            "default 20000000"))
       ->type_name("INTEGER");
   CLI::Option* quiet = align->add_flag("--quiet", settings->quiet, "no progress and no warnings, only the answer");
   align->add_flag("--verbose", settings->verbose, "also a line per iteration and per stage")->excludes(quiet);

@@ -192,8 +192,8 @@ std::vector<BenchmarkRow> in_order(const std::vector<BenchmarkTask>& tasks, std:
 int run_export(const BenchmarkSettings& settings) {
   const std::vector<BenchmarkCase> cases = select_cases(read_cases(settings.cases), settings.only);
   const fs::path list = settings.exported / "cases.csv";
-  if (same_file(list, settings.cases)) {
-    throw InvalidArgument(fmt::format("--export would replace CASES, {}", settings.cases.string()));
+  if (fs::exists(list)) {
+    throw InvalidArgument(fmt::format("--export {0}: {0}/cases.csv is there already", settings.exported.string()));
   }
   const std::size_t written = export_cases(cases, seed_of(settings), settings.exported);
   fmt::print("{} of {} cases are in {}\n", written, cases.size(), list.string());
@@ -224,21 +224,16 @@ constexpr const char* notes =
     "  name,group,source,target,truth,max_rotation_error_deg,max_translation_error_m\n"
     "  park/1--0,park,scans/station_1.ply,scans/station_0.ply,scans/station_1_to_0.txt,2,0.3\n"
     "  park/odd,park,scans/station_1.ply,kitchen.ply,none,0,0\n"
-    "truth is a 4x4 text, target_from_source; `none` if the pair does not overlap, so that \"not registered\" is the "
-    "only\n"
-    "right answer; `-` if nobody knows. A transformation is right if its rotation and the place it gives the source's\n"
-    "centroid are nearer to the truth than the two thresholds. Other columns are not looked at; group may be left "
-    "out.\n"
-    "Every source is moved by a random rigid motion first, since files often lie as they belong; errors are given as "
-    "if it\n"
-    "had not been. precision and recall are those of the last iteration's correspondences, nearer than a third of the\n"
-    "suppression radius at the true transformation (Eq. 14). Each case runs on one thread with all points in memory. "
-    "peak_memory_bytes is of the whole process, "
-    "with\n"
-    "--jobs 1 since the case began.\n"
-    "results.csv has a row per case and preset, written as it is finished; an earlier results.csv is replaced, or "
-    "with\n"
-    "--resume continued: answered rows stay, rows with an error are run again.\n"
+    "truth is a 4x4 text, target_from_source; `none` if the pair does not overlap, so that \"not registered\" is\n"
+    "the only right answer; `-` if nobody knows. A transformation is right if its rotation and the place it gives\n"
+    "the source's centroid are nearer to the truth than the two thresholds. Other columns are not looked at;\n"
+    "group may be left out.\n"
+    "Every source is moved by a random rigid motion first, since files often lie as they belong; errors are given\n"
+    "as if it had not been. precision and recall are those of the last iteration's correspondences, nearer than a\n"
+    "third of the suppression radius at the true transformation (Eq. 14). Each case runs on one thread with all\n"
+    "points in memory. peak_memory_bytes is of the whole process, with --jobs 1 since the case began.\n"
+    "results.csv has a row per case and preset, written as it is finished; an earlier results.csv is replaced, or\n"
+    "with --resume continued: answered rows stay, rows with an error are run again.\n"
     "Examples:\n"
     "  igsp benchmark cases.csv\n"
     "  igsp benchmark cases.csv --preset default --preset paper --jobs 4 --only park --out new.csv --compare old.csv\n"

@@ -105,8 +105,7 @@ std::optional<double> median(std::vector<double> values) {
 
 std::string summary_text(const std::vector<BenchmarkRow>& rows) {
   std::string text = false_accepts(rows);
-  for (const std::string& preset : values_of(rows, &BenchmarkRow::preset))
-    text += fmt::format("\n{}", preset_table(rows, preset));
+  for (const std::string& preset : values_of(rows, &BenchmarkRow::preset)) text += fmt::format("\n{}", preset_table(rows, preset));
   return text + errors(rows) + legend;
 }
 

@@ -13,8 +13,8 @@ Json to_json(const OptionValue& value) {
 }
 
 Json to_json(const CloudInput& input, const CloudSummary& summary) {
-  return {{"path", input.path.string()}, {"points", input.total},    {"dropped_points", input.dropped},
-          {"streamed", !input.whole()},  {"voxels", summary.voxels}, {"keypoints", summary.keypoints}};
+  return {{"path", input.path.string()},   {"points", input.total},        {"dropped_points", input.dropped},
+          {"streamed", !input.whole()},    {"voxels", summary.voxels},     {"keypoints", summary.keypoints}};
 }
 
 Json to_json(const IterationRecord& record) {
@@ -67,9 +67,7 @@ Json to_json(const Precision& precision) {
 
 }  // namespace
 
-Json to_json(const Transformation& transformation) {
-  return rows(transformation.matrix());
-}
+Json to_json(const Transformation& transformation) { return rows(transformation.matrix()); }
 
 Json to_json(const Options& options) {
   Json json = Json::object();
@@ -80,8 +78,8 @@ Json to_json(const Options& options) {
   return json;
 }
 
-Json align_report(const Result& result, const CloudInput& source, const CloudInput& target, double cpu_seconds,
-                  const std::vector<std::string>& warnings) {
+Json align_report(const Result& result, const CloudInput& source, const CloudInput& target,
+                  double cpu_seconds, const std::vector<std::string>& warnings) {
   Json json;
   json["version"] = version;
   json["verdict"] = result.registered ? "registered" : "not_registered";

@@ -18,8 +18,8 @@ Json to_json(const Transformation& transformation);
 Json to_json(const Options& options);
 
 /// What `igsp align --report` writes. `cpu_seconds`: of the registration, without reading, all threads.
-Json align_report(const Result& result, const CloudInput& source, const CloudInput& target, double cpu_seconds,
-                  const std::vector<std::string>& warnings);
+Json align_report(const Result& result, const CloudInput& source, const CloudInput& target,
+                  double cpu_seconds, const std::vector<std::string>& warnings);
 
 std::size_t peak_memory_bytes();
 

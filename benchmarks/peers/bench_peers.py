@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Runs igsp and its peers on the same pairs of clouds and keeps a row for every answer.
 
-Each run is a process of its own on the same files, with a time limit, and shortly after a run of igsp on that pair whose
-seconds stand in the same row. Rows are on the disk as they come; the same command does what is left of an interrupted
-run, and runs what had an error again. What the rows say is written by summary.py and plots.py.
+Each run is a process of its own on the same files, with a limit of its CPU time, and shortly after a run of igsp on
+that pair whose seconds stand in the same row. Rows are on the disk as they come; the same command does what is left of
+an interrupted run, and runs what had an error again. What the rows say is written by summary.py and plots.py.
 """
 
 import argparse
@@ -136,16 +136,19 @@ def numbered(cases: list[dict[str, str]], only: list[str]) -> list[tuple[int, di
 
 
 def line_of(row: Row) -> str:
-    judged_as = row["error"] or f"{row['verdict']}, {({'yes': 'right', 'no': 'wrong'}).get(row['success'], 'not judged')}"
+    judgement = {"yes": "right", "no": "wrong"}.get(row["success"], "not judged")
+    judged_as = row["error"] or f"{row['verdict']}, {judgement}"
     errors = f"{float(row['e_r_deg']):.3g} deg {float(row['centroid_displacement']):.3g}" if row["e_r_deg"] else ""
     seconds = f"{float(row['cpu_seconds']):.2f} s" if row["cpu_seconds"] else ""
     return f"{row['name']:<44.44} {row['preset']:<30} {row['threads']:>3} {judged_as:<28.60} {errors:<22} {seconds}"
 
 
-def igsp_version(programs: Programs) -> str:
+def igsp_version(programs: Programs, commit: str | None) -> str:
     version = subprocess.run([programs.igsp, "--version"], capture_output=True, text=True).stdout.split()[-1]
-    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
-    return version + (" " + commit.stdout.strip() if commit.returncode == 0 else "")
+    if commit is None:
+        head = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
+        commit = head.stdout.strip()
+    return f"{version} {commit}".strip()
 
 
 def arguments() -> argparse.Namespace:
@@ -155,13 +158,16 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--out", type=Path, default=ROOT / "docs/data/peers.csv", help="rows")
     parser.add_argument("--igsp", type=Path, default=binaries / "igsp")
     parser.add_argument("--pcl-peer", type=Path, default=binaries / "pcl_peer")
-    parser.add_argument("--python", type=Path, default=ROOT / "build/peers-venv/bin/python", help="with the Python peers")
-    parser.add_argument("--every", type=int, default=1, help="one of so many pairs of each group, and all that do not overlap")
+    parser.add_argument("--python", type=Path, default=ROOT / "build/peers-venv/bin/python",
+                        help="with the Python peers")
+    parser.add_argument("--every", type=int, default=1,
+                        help="one of so many pairs of each group, and all that do not overlap")
     parser.add_argument("--only", action="append", default=[], metavar="GROUP|GLOB", help="may be given several times")
     parser.add_argument("--peer", action="append", default=[], metavar="NAME", choices=[m.name for m in METHODS],
                         help="only this method; may be given several times")
-    parser.add_argument("--again", action="store_true", help="run also what has an answer, in place of it")
+    parser.add_argument("--again", action="store_true", help="run what has an answer, in place of it")
     parser.add_argument("--minutes", type=float, default=float("inf"), help="start nothing after this time")
+    parser.add_argument("--commit", help="that igsp was built from, for its version; by default the present one")
     parser.add_argument("--scramble", type=int, default=7, help="seed of the motions of the sources")
     args = parser.parse_args()
     if args.every < 1:
@@ -178,6 +184,7 @@ def key_of_run(name: str, run: Run, scramble: int) -> tuple[str, ...]:
 
 
 def todo_of(args: argparse.Namespace, methods: list[Method], done: set) -> list[tuple[dict[str, str], list[Run]]]:
+    """What has no answer yet; with --again what has one."""
     cases = numbered(read_list(args.cases), args.only)
     if not cases:
         raise SystemExit(f"--only {' '.join(args.only)} selects no case of {args.cases.name}")
@@ -185,7 +192,7 @@ def todo_of(args: argparse.Namespace, methods: list[Method], done: set) -> list[
     for passes in rounds(methods):
         for number, case in cases:
             runs = [run for run in runs_of(case, number, passes, args.every)
-                    if key_of_run(case["name"], run, args.scramble) not in done]
+                    if (key_of_run(case["name"], run, args.scramble) in done) == args.again]
             if runs:
                 todo.append((case, runs))
     return todo
@@ -203,17 +210,17 @@ def main() -> None:
         raise SystemExit("nothing to compare with")
     methods = [m for m in methods if m.program not in missing]
     rows = [row for row in read_rows(args.out) if not row["error"] or row["error"].startswith("stopped after")]
-    todo = todo_of(args, methods, set() if args.again else {key_of(row) for row in rows})
-    if args.again:
-        again = {key_of_run(case["name"], run, args.scramble) for case, runs in todo for run in runs}
-        rows = [row for row in rows if key_of(row) not in again]
+    todo = todo_of(args, methods, {key_of(row) for row in rows})
+    again = {key_of_run(case["name"], run, args.scramble) for case, runs in todo for run in runs}
+    rows = [row for row in rows if key_of(row) not in again]
     args.out.parent.mkdir(parents=True, exist_ok=True)
     write_rows(args.out, rows)
-    version = igsp_version(programs)
+    version = igsp_version(programs, args.commit)
     total, count = sum(len(runs) for _, runs in todo), 0
     for case, runs in todo:
         if time.monotonic() - start > 60 * args.minutes:
-            raise SystemExit(f"time is up: {count} of {total} runs done; the same command does the rest")
+            print(f"time is up: {count} of {total} runs done; the same command does the rest")
+            return
         with tempfile.TemporaryDirectory() as folder:
             pair = export_pair(args.igsp, args.cases, case["name"], args.scramble, Path(folder))
             runner = PairRunner(pair, programs, args.scramble, Path(folder), version)

@@ -17,7 +17,7 @@ def register(method: str, source: np.ndarray, target: np.ndarray, voxel_size: fl
     scale = 1.0 if voxel_size >= SMALLEST_VOXEL else USUAL_VOXEL / voxel_size
     centroids = [points.mean(axis=0) for points in (source, target)]
     clouds = [list(((points - centroid) * scale).astype(np.float32))
-              for points, centroid in zip((source, target), centroids)]
+              for points, centroid in zip((source, target), centroids, strict=True)]
     matcher = kiss_matcher.KISSMatcher(kiss_matcher.KISSMatcherConfig(voxel_size * scale))
     solution = matcher.estimate(*clouds)
     inliers = matcher.get_num_final_inliers()

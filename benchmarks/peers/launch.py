@@ -2,6 +2,8 @@
 
 import json
 import os
+import resource
+import signal
 import subprocess
 import tempfile
 import threading
@@ -13,6 +15,7 @@ from methods import ALL_THREADS, Run
 from pairs import Pair
 
 HERE = Path(__file__).resolve().parent
+STUCK = 10  # a process that needs so many times its CPU time by the clock is waiting for something
 
 
 @dataclass(frozen=True)
@@ -44,11 +47,11 @@ def command_of(run: Run, pair: Pair, voxel_size: float, guess: Path | None, repo
     method, threads = run.method, run.threads or os.cpu_count()
     if method.program == "igsp":
         start = ["--initial", guess] if guess else []
-        return [programs.igsp, "align", pair.source, pair.target, "--preset", method.method, "--threads", threads, "--quiet",
-                "--report", report, *start]
+        return [programs.igsp, "align", pair.source, pair.target, "--preset", method.method, "--threads", threads,
+                "--quiet", "--report", report, *start]
     if method.program == "pcl":
         return [programs.pcl_peer, method.method, pair.source, pair.target, "--voxel-size", repr(voxel_size), "--seed",
-                run.seed, "--threads", threads]
+                run.seed, "--threads", threads, "--time-limit", method.time_limit_s // 3]
     start = [guess] if guess else []
     return [programs.python, HERE / "run_python_peer.py", method.program, method.method, pair.source, pair.target,
             repr(voxel_size), run.seed, threads, *start]
@@ -63,13 +66,15 @@ def answers_of_igsp(report: dict) -> dict:
     return {**report, "answers": [answer] if estimate else []}
 
 
-def measured(command: list, threads: int, time_limit_s: float, working_folder: Path) -> tuple[int, str, str, Outcome]:
-    """Runs a command on one processor or on all. Exit code (-9 after the time limit), output, complaints, resources."""
+def measured(command: list, threads: int, time_limit_s: int, working_folder: Path) -> tuple[int, str, str, Outcome]:
+    """Runs a command on one processor or on all, for a limited CPU time: the clock would be unjust on a busy machine.
+    Exit code, output, complaints, resources."""
     count = threads or os.cpu_count()
     environment = dict(os.environ, OMP_NUM_THREADS=str(count), OPENBLAS_NUM_THREADS=str(count))
     processors = sorted(os.sched_getaffinity(0))
 
     def settle() -> None:
+        resource.setrlimit(resource.RLIMIT_CPU, (time_limit_s, time_limit_s))
         if threads != ALL_THREADS:
             os.sched_setaffinity(0, processors[-threads:])
 
@@ -77,7 +82,7 @@ def measured(command: list, threads: int, time_limit_s: float, working_folder: P
         start = time.perf_counter()
         process = subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=output,
                                    stderr=complaints, env=environment, cwd=working_folder, preexec_fn=settle)
-        timer = threading.Timer(time_limit_s, process.kill)
+        timer = threading.Timer(STUCK * time_limit_s, process.kill)
         timer.start()
         try:
             _, status, usage = os.wait4(process.pid, 0)
@@ -106,8 +111,8 @@ def launch(run: Run, pair: Pair, voxel_size: float, guess: Path | None, programs
     if code in ((0, 1) if is_igsp else (0,)):  # igsp: 1 is the verdict "not registered"
         text = report.read_text() if is_igsp else output.strip().splitlines()[-1]
         outcome.report = answers_of_igsp(json.loads(text)) if is_igsp else json.loads(text)
-    elif outcome.wall_seconds >= run.method.time_limit_s:
-        outcome.error = f"stopped after {run.method.time_limit_s} s"
+    elif -code in (signal.SIGKILL, signal.SIGXCPU):
+        outcome.error = f"stopped after {run.method.time_limit_s} s of CPU"
     else:
         last = (complaints.strip() or output.strip() or "no word").splitlines()[-1]
         outcome.error = f"exit code {code}: {last}"

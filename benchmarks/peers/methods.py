@@ -20,7 +20,7 @@ class Method:
     seeds: int = 1  # runs, for the stochastic ones
     every: int = 1  # of the pairs, for the slow ones
     every_threads: int = 4  # the same for the run on all threads, of those that overlap
-    time_limit_s: int = 60
+    time_limit_s: int = 60  # CPU of the process; a third of it by the clock for what limits itself
     recommended: tuple[tuple[str, float], ...] = ()  # voxel size by group
     from_guess: bool = False  # a fine registration: starts from the perturbed truth
 
@@ -45,7 +45,7 @@ METHODS = [
     Method("igsp_refine", "igsp", "default", from_guess=True),
     Method("small_gicp_refine", "small_gicp_peer", from_guess=True, recommended=_table(SMALL_GICP_VOXELS)),
     Method("pcl_prerejective", "pcl", "prerejective", seeds=3, every=4, every_threads=16),
-    Method("open3d_ransac_4m", "open3d_peer", "ransac_4m", every=4, every_threads=16, time_limit_s=180),
+    Method("open3d_ransac_4m", "open3d_peer", "ransac_4m", every=8, every_threads=32, time_limit_s=180),
 ]
 
 
@@ -78,8 +78,15 @@ def wanted(run: Run, number: int, every: int, share: int, negative: bool) -> boo
 def rounds(methods: list[Method]) -> list[list[tuple[Run, int]]]:
     """Passes over all pairs, the most telling first, so that a run which is stopped leaves whole tables. With each run
     the share of pairs it is wanted for: one of so many."""
-    first = [(Run(m, "igsp", 1, 1), m.every) for m in methods]
+    slow = [m for m in methods if m.every > 1]
+    quick = [m for m in methods if m.every == 1]
+
+    def one_thread(of: list[Method], seed: int) -> list[tuple[Run, int]]:
+        return [(Run(m, "igsp", 1, seed), m.every) for m in of if m.seeds >= seed]
+
+    def all_threads(of: list[Method]) -> list[tuple[Run, int]]:
+        return [(Run(m, "igsp", ALL_THREADS, 1), max(m.every, m.every_threads)) for m in of]
+
     own_voxels = [(Run(m, "recommended", 1, 1), m.every) for m in methods if m.recommended]
-    all_threads = [(Run(m, "igsp", ALL_THREADS, 1), max(m.every, m.every_threads)) for m in methods]
-    more_seeds = [[(Run(m, "igsp", 1, seed), m.every) for m in methods if m.seeds >= seed] for seed in (2, 3)]
-    return [first, more_seeds[0], own_voxels, all_threads, more_seeds[1]]
+    return [one_thread(quick, 1), one_thread(quick, 2), own_voxels, one_thread(slow, 1), all_threads(quick),
+            one_thread(quick, 3), one_thread(slow, 2), one_thread(slow, 3), all_threads(slow)]

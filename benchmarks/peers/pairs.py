@@ -33,8 +33,8 @@ def export_pair(igsp: Path, cases: Path, name: str, seed: int, folder: Path) -> 
     """The named case with its source moved, as files in `folder`."""
     # The name as a pattern of --only: its own special characters mean themselves.
     pattern = re.sub(r"([*?\[])", r"[\1]", name)
-    subprocess.run([igsp, "benchmark", cases, "--only", pattern, "--scramble", str(seed), "--export", folder], check=True,
-                   stdout=subprocess.DEVNULL)
+    subprocess.run([igsp, "benchmark", cases, "--only", pattern, "--scramble", str(seed), "--export", folder],
+                   check=True, stdout=subprocess.DEVNULL)
     return pair_of(next(row for row in read_list(folder / "cases.csv") if row["name"] == name), folder)
 
 

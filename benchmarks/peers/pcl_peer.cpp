@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
   app.add_option("--threads", settings.threads)->check(CLI::PositiveNumber);
   app.add_option("--overlap", settings.overlap, "what kfpcs is told; default 0.5, as in PCL");
   app.add_flag("--as-given", as_given, "start from where the clouds lie, not from aligned centroids");
-  app.add_option("--time-limit", settings.time_limit_s, "of kfpcs [s]; default 60");
+  app.add_option("--time-limit", settings.time_limit_s, "of kfpcs, by the clock [s]; default 60");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

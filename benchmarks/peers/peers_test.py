@@ -10,11 +10,13 @@ from pathlib import Path
 import numpy as np
 
 from bench_peers import judged, key_of_run, rows_of, runs_of
-from launch import Outcome, Programs, launch, missing_programs
+from launch import Programs, launch, missing_programs
 from methods import ALL_THREADS, METHODS, Method, Run, rounds
 from metrics import pose_errors, rotation_angle_rad
 from pairs import export_pair, perturbed_truth, read_cloud
 from rows import COLUMNS, SAME_AS_IGSP, append_rows, key_of, read_rows, write_rows
+from summary import document, not_run
+from tallies import tallies
 
 IGSP = Path(sys.argv.pop(1)).resolve()
 HERE = Path(__file__).resolve().parent
@@ -24,13 +26,14 @@ odd,negative,scans/station_1.ply,scans/noise.xyz,none,0,0
 """
 # A peer in a few lines of Python; its second answer is a reflection.
 PEER = """
-
 import numpy as np
 VERSION = "1.2"
 def register(method, source, target, voxel_size, seed, threads, guess):
     assert source.shape[1] == target.shape[1] == 3 and guess is None
     if method == "fails": raise RuntimeError("no luck")
-    if method == "sleeps": import time; time.sleep(60)
+    if method == "never_ends":
+        while True: pass
+    sorted(source.ravel().tolist())  # some seconds to measure
     yield {"label": "", "target_from_source": np.eye(4), "score": 0.5, "converged": False}
     yield {"label": "icp", "target_from_source": np.diag([1, 1, -1, 1.0]), "score": voxel_size, "converged": True}
 """
@@ -130,8 +133,8 @@ class Runs(unittest.TestCase):
     def test_errors_are_rows(self):
         (row,), _ = self.launch("fails")
         self.assertEqual((row["error"], row["verdict"]), ("exit code 1: RuntimeError: no luck", ""))
-        (row,), _ = self.launch("sleeps", limit=1)
-        self.assertEqual(row["error"], "stopped after 1 s")
+        (row,), _ = self.launch("never_ends", limit=1)
+        self.assertEqual(row["error"], "stopped after 1 s of CPU")
 
     def test_igsp_without_an_answer(self):
         odd = export_pair(IGSP, root / "cases.csv", "odd", 7, root / "odd")
@@ -170,6 +173,44 @@ class Runs(unittest.TestCase):
         self.assertIn("compared: ", compared.stdout, compared.stderr)
         run = subprocess.run(command + ["--only", "nothing"], capture_output=True, text=True)
         self.assertIn("selects no case", run.stderr)
+
+
+def row(preset, name, truth="known", verdict="registered", success="yes", **others):
+    return {column: "" for column in COLUMNS} | {
+        "preset": preset, "name": name, "group": "g" if truth == "known" else "negative", "truth": truth,
+        "verdict": verdict, "success": success, "voxels": "igsp", "threads": "1", "version": "1", "scramble": "7",
+        **others}
+
+
+class Tallies(unittest.TestCase):
+    rows = [row("open3d_fgr", "a", e_r_deg="1", score="9", cpu_seconds="4", igsp_cpu_seconds="2", seed="1"),
+            row("open3d_fgr", "a", e_r_deg="90", score="3", success="no", cpu_seconds="6", igsp_cpu_seconds="1",
+                seed="2"),
+            row("open3d_fgr", "b", e_r_deg="3", score="5", verdict="not_registered", seed="1"),
+            row("open3d_fgr", "c", truth="none", score="7", success="no"),
+            row("open3d_fgr", "d", truth="none", score="4", verdict="not_registered"),
+            row("open3d_fgr", "e", verdict="", success="", error="stopped after 1 s of CPU"),
+            row("open3d_fgr", "a", threads="all"), row("open3d_fgr", "a", voxels="recommended"),
+            row("igsp", "a", reason="looks good"), row("igsp", "b", verdict="not_registered", reason="who knows"),
+            row("igsp", "c", truth="none", verdict="not_registered"), row("igsp_refine", "a")]
+
+    def test_counts_by_hand(self):
+        tally = tallies(self.rows)["open3d_fgr"]
+        self.assertEqual((len(tally.pairs), len(tally.known), len(tally.right), len(tally.said)), (5, 4, 2, 1))
+        self.assertEqual((len(tally.false_accepts), len(tally.failures)), (2, 1))
+        self.assertEqual((tally.per_pair(all), tally.per_pair(any)), (1, 2))  # b; a and b
+        self.assertEqual(tally.median("e_r_deg", right_only=True), 2)
+        self.assertEqual(tally.ratio("cpu_seconds", "igsp_cpu_seconds"), 4)  # of 2 and 6
+        self.assertEqual(tally.right_without_false_accept(), 1)  # 9 is above 7, 5 is not
+        self.assertEqual(list(tallies(self.rows)), ["igsp", "igsp_refine", "open3d_fgr"])
+
+    def test_the_page(self):
+        text = document(self.rows, not_run(self.rows, Programs(IGSP, root / "nowhere", root / "nowhere")))
+        self.assertIn("| Open3D FGR | 5 | 2 of 4 | 1 / 2 | 2 of 2 | 1 of 4 | 2 (1 of 2) | 1 |", text)
+        self.assertIn("| b | right but refused | who knows | Open3D FGR |", text)
+        self.assertIn("**Not run:** PCL NDT: nowhere: No such file or directory.", text)
+        self.assertIn("- e, Open3D FGR (igsp voxels, 1 threads, seed -): stopped after 1 s of CPU", text)
+        self.assertNotIn("{", text)
 
 
 class Bookkeeping(unittest.TestCase):

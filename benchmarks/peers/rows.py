@@ -8,9 +8,9 @@ SAME_AS_IGSP = ("name group preset scramble truth verdict success confidence e_r
                 "precision recall iterations source_keypoints target_keypoints voxel_size stage_seconds cpu_seconds "
                 "wall_seconds peak_memory_bytes reason error").split()
 # preset is the method's name. cpu_seconds and wall_seconds are of the registration from points in memory, those of the
-# process are of everything, as is the peak of the memory; memory_before_bytes is that peak when the clouds had been read
-# and nothing had been done yet: Python and its libraries make most of it. The seconds of igsp belong to its run on the
-# same pair just before, with as many threads.
+# process are of everything, as is the peak of the memory; memory_before_bytes is that peak when the clouds had been
+# read and nothing had been done yet: Python and its libraries make most of it. The seconds of igsp belong to its run on
+# the same pair just before, with as many threads.
 OF_PEERS = ("version voxels threads seed score process_cpu_seconds process_wall_seconds memory_before_bytes "
             "igsp_cpu_seconds igsp_wall_seconds").split()
 COLUMNS = SAME_AS_IGSP + OF_PEERS
@@ -41,7 +41,7 @@ def read_rows(path: Path) -> list[Row]:
     text = path.read_text()
     lines = text[:text.rfind("\n") + 1].splitlines()
     if not lines or next(csv.reader(lines[:1])) != COLUMNS:
-        raise SystemExit(f"{path}: line 1: not the rows of this benchmark, which start with {','.join(COLUMNS[:4])},...")
+        raise SystemExit(f"{path}: line 1: not the rows of this benchmark, which start with {','.join(COLUMNS[:4])}")
     return list(csv.DictReader(lines))
 
 
