@@ -4,7 +4,7 @@ jobs := $(shell nproc)
 igsp := build/release/bin/igsp
 demo := build/demo
 
-.PHONY: all build setup demo test deb docs wheel bench bench-peers calibrate asan tsan fuzz format install clean
+.PHONY: all build setup demo test deb docs wheel bench bench-peers calibrate paper asan tsan fuzz format install clean
 
 all: build
 
@@ -67,6 +67,26 @@ calibrate:
 	cmake --build --preset release --target igsp_calibrate
 	build/release/bin/igsp_calibrate --pairs 1000 --jobs $(jobs) --out docs/data/calibration.csv
 	/usr/bin/python3 benchmarks/calibration/reliability.py
+
+# What docs/paper/ shows: the paper's tables and figures, with the real scans in `scans` if they are there. About ten
+# minutes of one core.
+scans ?= ../shared/data
+paper_data := docs/paper/data
+paper:
+	@scripts/setup.sh python3-matplotlib libpcl-dev
+	cmake --preset release -DIGSP_BUILD_BENCHMARKS=ON -DIGSP_BUILD_PEERS=ON
+	cmake --build --preset release --target igsp_paper pcl_peer
+	mkdir -p $(paper_data)
+	grep -m1 -oP 'model name\s*: \K.*' /proc/cpuinfo > $(paper_data)/machine.txt || uname -m > $(paper_data)/machine.txt
+	build/release/bin/igsp_paper pairs --scans $(scans) --pairs build/paper
+	cp build/paper/cases.csv $(paper_data)/pairs.csv
+	build/release/bin/igsp_paper registrations --pairs build/paper --data $(paper_data)
+	build/release/bin/igsp_paper parameters --pairs build/paper --data $(paper_data)
+	build/release/bin/igsp_paper growth --data $(paper_data)
+	/usr/bin/python3 benchmarks/paper/run_peers.py --program build/release/bin/pcl_peer --pairs build/paper --data $(paper_data)
+	/usr/bin/python3 benchmarks/paper/figures.py --data $(paper_data) --out docs/paper
+	/usr/bin/python3 benchmarks/paper/pictures.py --pairs build/paper --data $(paper_data) --out docs/paper
+	/usr/bin/python3 benchmarks/paper/report.py --data $(paper_data) --out docs/paper/README.md
 
 # New inputs land in build/fuzz/inputs; a crash is written beside the Makefile and stops the run.
 fuzz_seconds ?= 60
