@@ -93,5 +93,24 @@ TEST_P(FreeDirections, Sphere) {
   expect_named(result, rotations);
 }
 
+TEST_P(FreeDirections, Plane) {
+  const Scene scene = make_scene("plane", GetParam());
+  const Result result = align(scene.pair.source, scene.pair.target);
+  const double scale = scale_of(result, scene.pair);
+  const Eigen::Matrix3d axes = scene.target_from_world.linear();
+  expect_named(result, {translation_along(axes.col(0)), translation_along(axes.col(1)),
+                        rotation_about(axes.col(2), scene.target_from_world.translation(), result.precision.centre, scale)});
+}
+
+TEST_P(FreeDirections, Cylinder) {
+  const Scene scene = make_scene("cylinder", GetParam());
+  const Result result = align(scene.pair.source, scene.pair.target);
+  const double scale = scale_of(result, scene.pair);
+  const Vector3d axis = scene.target_from_world.linear().col(2);
+  // Where no cap is in sight, nothing holds the cylinder along its axis either.
+  expect_named(result, {rotation_about(axis, scene.target_from_world.translation(), result.precision.centre, scale)},
+               {translation_along(axis)});
+}
+
 }  // namespace
 }  // namespace igsp

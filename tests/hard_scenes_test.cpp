@@ -160,5 +160,27 @@ void add_outliers(Points& points, double share, Random& random) {
   }
 }
 
+TEST(HardScenes, OutliersOfThirtyPercent) {
+  for (const char* scene : {"park", "indoor", "object"}) {
+    for (const int points : {20000, 100000}) {
+      SCOPED_TRACE(::testing::Message() << scene << " " << points);
+      Pair pair = scrambled_pair(scene, points, 1);
+      Random random(1);
+      add_outliers(pair.source, 0.3, random);
+      add_outliers(pair.target, 0.3, random);
+      expect_right(pair);
+    }
+  }
+}
+
+TEST(HardScenes, SourceInsideTheTarget) {
+  for (const char* scene : {"park", "indoor", "object"}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      SCOPED_TRACE(::testing::Message() << scene << " " << seed);
+      expect_right(ball_in_scan(scene, 0.3, seed));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace igsp

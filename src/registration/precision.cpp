@@ -13,12 +13,15 @@ namespace {
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-// Only directions that the normal equations hardly see are tried: the root mean square change of the distances per unit
-// of motion. Scenes with corners lie above 0.2, an endless corridor at 0.01 to 0.05; stray normals of sparse scan lines
-// lift a plane's second direction to 0.25, so the equations alone do not decide.
-constexpr double weak_direction = 0.3;
-constexpr double trial_motion = 8.0;        // voxels
-constexpr double unchanged_contact = 0.975;  // corridors, cylinders, planes: 0.99 and more; others: at most 0.93
+// The normal equations propose directions, sorted by the root mean square change of the distances per unit of motion;
+// the contact after a trial motion decides. The equations alone cannot: an endless corridor lies at 0.01 to 0.05 and
+// scenes with corners above 0.2, but stray normals of sparse scan lines, far out on a long lever, lift a plane's rotation
+// about its normal to 0.6.
+constexpr double well_fixed = 0.7;
+constexpr double trial_motion = 8.0;          // voxels
+constexpr double unchanged_contact = 0.975;   // corridors, planes: 0.98 and more; others: at most 0.93
+constexpr double hardly_seen = 0.02;          // bodies of revolution: 0.005 to 0.016, which is next to proof, ...
+constexpr double similar_contact = 0.95;      // ... so a pose that is a little off may touch a little less
 constexpr double search_radius = 1.5;       // voxels
 constexpr std::size_t max_points = 1500;
 
@@ -98,15 +101,16 @@ std::vector<FreeDirection> free_directions(const PreparedCloud& moved, const Pre
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled / scaled.bottomRightCorner<3, 3>().trace());
 
   const double contact = surface_contact(moved, fixed, fixed_from_moved).share;
-  const auto still_touches = [&](const Vector6& motion) {
+  const auto still_touches = [&](const Vector6& motion, double share) {
     const Transformation tried = motion_about(at_pose.centre, motion, size) * fixed_from_moved;
-    return surface_contact(moved, fixed, tried).share > unchanged_contact * contact &&
-           surface_contact(fixed, moved, tried.inverse()).share > unchanged_contact * contact;
+    return surface_contact(moved, fixed, tried).share > share * contact &&
+           surface_contact(fixed, moved, tried.inverse()).share > share * contact;
   };
   std::vector<FreeDirection> found;
-  for (int i = 0; i < 6 && solver.eigenvalues()[i] < weak_direction * weak_direction; ++i) {
+  for (int i = 0; i < 6 && solver.eigenvalues()[i] < well_fixed * well_fixed; ++i) {
     const Vector6 motion = solver.eigenvectors().col(i);
-    if (still_touches(trial_motion * v * motion) && still_touches(-trial_motion * v * motion)) {
+    const double share = solver.eigenvalues()[i] < hardly_seen * hardly_seen ? similar_contact : unchanged_contact;
+    if (still_touches(trial_motion * v * motion, share) && still_touches(-trial_motion * v * motion, share)) {
       found.push_back({motion, describe(motion)});
     }
   }

@@ -46,6 +46,13 @@ std::string in_words(const Result& result) {
   return text;
 }
 
+// On itself the target lies as well as it can, so a motion that it allows shows even where the estimate is poor or none.
+void name_what_the_target_leaves_free(const CommonFrame& frame, Result& result) {
+  result.precision.free_directions = free_directions(frame.target(), frame.target(), Transformation::Identity());
+  if (result.precision.free_directions.empty()) return;
+  result.reason += "; the target alone leaves free: " + free_motions(result.precision.free_directions);
+}
+
 // Other poses, best first, without those that say the same as the winner.
 std::vector<Rival> true_rivals(const CommonFrame& frame, const SearchOutcome& outcome) {
   std::vector<Rival> rivals;
@@ -65,10 +72,7 @@ void judge(CommonFrame& frame, const SearchOutcome& outcome, Result& result) {
   result.has_estimate = outcome.has_estimate;
   if (!outcome.has_estimate) {
     result.reason = why_no_estimate(result);
-    result.precision.free_directions = free_directions(frame.target(), frame.target(), Transformation::Identity());
-    if (!result.precision.free_directions.empty()) {
-      result.reason += "; the target alone leaves free: " + free_motions(result.precision.free_directions);
-    }
+    name_what_the_target_leaves_free(frame, result);
     return;
   }
   const PoseAssessment pose = assess_pose(frame, outcome.target_from_source);
@@ -103,6 +107,7 @@ void judge(CommonFrame& frame, const SearchOutcome& outcome, Result& result) {
   if (!result.registered && !is_free) {
     result.reason += rival_odds > chance_odds ? "; ambiguous: another pose explains the clouds about as well"
                                               : "; too little to tell it from chance";
+    name_what_the_target_leaves_free(frame, result);
   }
 }
 
