@@ -17,8 +17,8 @@ ROOT = Path(__file__).resolve().parents[2]
 MARKERS = {"igsp": "*", "igsp_paper": "P", "open3d_ransac_100k": "o", "open3d_ransac_4m": "s", "open3d_fgr": "^",
            "kiss_matcher": "D", "pcl_geometric_consistency": "v", "pcl_kfpcs": "X", "pcl_icp": "<", "pcl_ndt": ">",
            "pcl_prerejective": "h"}
-PARTS = [("right, said so", "0.25", ""), ("right, but refused", "0.8", "...."), ("wrong or no overlap, refused", "white", ""),
-         ("wrong, yet called registered", "white", "xxxx")]
+PARTS = [("right, said so", "0.25", ""), ("right, but refused", "0.8", "...."),
+         ("wrong or no overlap, refused", "white", ""), ("wrong, yet called registered", "white", "xxxx")]
 
 
 def save(figure: plt.Figure, path: Path) -> None:
@@ -79,7 +79,7 @@ def draw_verdicts(found: dict[str, Tally], path: Path) -> None:
                       label=label if place == 0 else None)
             left += share
     axes.set_yticks(range(len(shown)), titles)
-    axes.set_xlabel(f"share of the {largest} pairs [%]")
+    axes.set_xlabel(f"share of the pairs, {largest} unless said [%]")
     axes.set_xlim(0, 100)
     axes.legend(loc="lower center", bbox_to_anchor=(0.4, 1.0), ncols=2, frameon=False)
     save(figure, path)
