@@ -190,7 +190,7 @@ constexpr const char* examples =
     "  igsp align a.ply b.ply --config igsp.toml --threads 4\n"
     "The options start from --preset or --config; flags override them. Exit codes: 0 registered, 1 not registered,\n"
     "2 usage or option, 3 input or output, 130 interrupted. PLY, PCD and text (XYZ, TXT, CSV, PTS) are read, written;\n"
-    "the command of the Python package also takes LAS, LAZ, E57 and PTX, and writes them with all that they hold.";
+    "the command of the Python package also takes LAS, LAZ, E57 and PTX, and writes them moved, their attributes kept.";
 
 }  // namespace
 

@@ -93,7 +93,7 @@ def _load(cloud: object, name: str) -> Points:
 def _share_voxel_size(source: object, target: object, keywords: dict[str, Any]) -> None:
     features = source if isinstance(source, Features) else target
     assert isinstance(features, Features)
-    given = keywords.get("voxel_size", 0)
+    given = _core.resolve_options(keywords)["voxel_size"]  # a file of options may say it, too
     if given and given != features.voxel_size:
         raise ValueError(f"voxel_size is {given}, but the features were extracted with {features.voxel_size}")
     keywords["voxel_size"] = features.voxel_size

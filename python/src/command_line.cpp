@@ -4,7 +4,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <cctype>
 #include <memory>
+#include <new>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -33,6 +35,7 @@ auto in_python(const Body& body) {
     const std::string message = message_of(error.value());
     if (error.matches(PyExc_KeyboardInterrupt)) throw Cancelled();
     if (error.matches(PyExc_OSError) || error.matches(PyExc_ImportError)) throw FileError(message);
+    if (error.matches(PyExc_MemoryError)) throw std::bad_alloc();
     if (error.matches(PyExc_ValueError)) throw InvalidArgument(message);
     throw std::runtime_error(error.what());  // its text must be made now, with the lock
   }
@@ -41,14 +44,16 @@ auto in_python(const Body& body) {
 // The iterator that igsp.formats.read_chunks returns, and its latest chunk.
 struct Chunks {
   nb::object iterator;
-  nb::object array;
+  PointsIn points;
 };
 
 PointView next_chunk(Chunks& chunks) {
   return in_python([&] {
-    chunks.array = nb::steal(PyIter_Next(chunks.iterator.ptr()));
+    const nb::object array = nb::steal(PyIter_Next(chunks.iterator.ptr()));
     if (PyErr_Occurred()) throw nb::python_error();
-    return chunks.array.is_valid() ? view_of(nb::cast<PointsIn>(chunks.array)) : PointView();
+    if (!array.is_valid()) return PointView();
+    chunks.points = nb::cast<PointsIn>(array);
+    return view_of(chunks.points);
   });
 }
 

@@ -7,8 +7,6 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <optional>
 
 #include "config/nearest.hpp"
 #include "config/option_list.hpp"

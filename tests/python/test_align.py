@@ -86,7 +86,7 @@ def test_a_guess_replaces_the_search(pair, truth):
     assert not igsp.align(*pair, initial=wrong).registered
 
 
-def test_staged_is_the_same_as_at_once(pair, result):
+def test_staged_is_the_same_as_at_once(pair, result, tmp_path):
     source, target = (igsp.extract_features(cloud, voxel_size=result.voxel_size) for cloud in pair)
     for answer in [igsp.align(source, target), igsp.align(pair[0], target), igsp.align(source, pair[1])]:
         np.testing.assert_array_equal(answer.target_from_source, result.target_from_source)
@@ -97,6 +97,9 @@ def test_staged_is_the_same_as_at_once(pair, result):
     np.testing.assert_allclose(target.points[target.keypoints] + target.origin, result.target_keypoints)
     with pytest.raises(ValueError, match="voxel_size is 1.0, but the features were extracted with"):
         igsp.align(pair[0], target, voxel_size=1.0)
+    (tmp_path / "igsp.toml").write_text("[scale]\nvoxel_size = 1.0\n")
+    with pytest.raises(ValueError, match="voxel_size is 1.0, but the features were extracted with"):
+        igsp.align(pair[0], target, config=tmp_path / "igsp.toml")
 
 
 def test_frames_are_columns_x_y_n(pair, result):
