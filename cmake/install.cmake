@@ -2,7 +2,8 @@
 include(CMakePackageConfigHelpers)
 set(package_directory ${CMAKE_INSTALL_LIBDIR}/cmake/igsp)
 
-# Two components, which become the packages igsp and libigsp-dev: `command` is what runs, `development` what is built with.
+# Two components, which become the packages igsp and libigsp-dev: `command` is what runs, `development` what others
+# build with.
 install(TARGETS igsp EXPORT igsp ARCHIVE COMPONENT development
   LIBRARY COMPONENT command NAMELINK_COMPONENT development)
 if(IGSP_BUILD_APPS)

@@ -14,11 +14,12 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME igsp)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
-set(CPACK_COMPONENT_COMMAND_DESCRIPTION "The igsp command: finds the rigid motion that puts one 3D point cloud onto another
-and says whether to believe it.")
+set(CPACK_COMPONENT_COMMAND_DESCRIPTION "The igsp command: finds the rigid motion that puts one 3D point cloud onto
+another and says whether to believe it.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libigsp-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4), libtbb-dev, libfmt-dev, liblzf-dev")  # as igspConfig.cmake
+# What igspConfig.cmake looks for.
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4), libtbb-dev, libfmt-dev, liblzf-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Headers, static library and CMake package of igsp, for C++20.")
 include(CPack)

@@ -1,5 +1,6 @@
 """Completion completes in a real bash, zsh and fish, and the manual page is complete and clean.
-usage: completion_test.py IGSP [unittest arguments]. A shell or mandoc that is not there: its tests are reported as skipped.
+usage: completion_test.py IGSP [unittest arguments]. Of a shell or mandoc that is not there the tests are reported as
+skipped.
 """
 import fcntl
 import os
@@ -15,7 +16,8 @@ import unittest
 from pathlib import Path
 
 IGSP = os.path.abspath(sys.argv.pop(1))
-ENVIRONMENT = {"HOME": "/nonexistent", "PATH": f"{Path(IGSP).parent}:/usr/bin:/bin", "LC_ALL": "C.UTF-8", "TERM": "dumb"}
+ENVIRONMENT = {"HOME": "/nonexistent", "PATH": f"{Path(IGSP).parent}:/usr/bin:/bin", "LC_ALL": "C.UTF-8",
+               "TERM": "dumb"}
 
 
 def run(*command: str, **keywords) -> str:
@@ -79,7 +81,8 @@ class Bash(ShellTest, unittest.TestCase):
     def offered(self, line: str) -> set[str]:
         words = re.findall(r"=|[^\s=]+", line) + ([""] if line.endswith(" ") else [])
         script = ('source ./completion; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); '
-                  'function=$(complete -p igsp | sed "s/.*-F \\([^ ]*\\).*/\\1/"); $function; printf "%s\\n" "${COMPREPLY[@]}"')
+                  'function=$(complete -p igsp | sed "s/.*-F \\([^ ]*\\).*/\\1/"); $function; '
+                  'printf "%s\\n" "${COMPREPLY[@]}"')
         reply = run("bash", "--norc", "-c", script, "bash", *words, cwd=self.folder)
         return {word for word in reply.splitlines() if word}
 
@@ -99,8 +102,8 @@ class Fish(ShellTest, unittest.TestCase):
 class Zsh(ShellTest, unittest.TestCase):
     shell = "zsh"
 
-    SETUP = ("PS1=; LISTMAX=1000; autoload -Uz compinit; compinit -u -D; source ./completion; bindkey '^I' list-choices; "
-             "finish() { print FINISHED; exit }; zle -N finish; bindkey '^X' finish; print RE''ADY\n")
+    SETUP = ("PS1=; LISTMAX=1000; autoload -Uz compinit; compinit -u -D; source ./completion; "
+             "bindkey '^I' list-choices; finish() { print FINISHED; exit }; zle -N finish; bindkey '^X' finish; print RE''ADY\n")
 
     def offered(self, line: str) -> set[str]:
         """What a zsh in a terminal of its own lists when Tab is pressed after the line."""
@@ -147,8 +150,8 @@ class Manual(unittest.TestCase):
     def test_man_shows_it_without_warnings(self):
         if not shutil.which("man"):
             self.skipTest("man is not there")
-        shown = subprocess.run(["man", "--warnings", "-l", "-"], input=run(IGSP, "manual"), capture_output=True, text=True,
-                               env=ENVIRONMENT)
+        shown = subprocess.run(["man", "--warnings", "-l", "-"], input=run(IGSP, "manual"), capture_output=True,
+                               text=True, env=ENVIRONMENT)
         self.assertEqual((shown.returncode, shown.stderr), (0, ""))
         self.assertIn("igsp align [OPTIONS] SOURCE TARGET", shown.stdout)
 

@@ -1,6 +1,6 @@
-"""Builds the documentation site and reads it as a visitor would: no warning of MkDocs, every page in the navigation, every
-link and anchor leads somewhere, every picture is there, nothing is loaded from elsewhere, and the page of options has them
-all. usage: site_test.py IGSP SITE_FOLDER. Exit code 77, "skipped", where MkDocs Material is not installed.
+"""Builds the documentation site and reads it as a visitor would: no warning of MkDocs, every page in the navigation,
+every link and anchor leads somewhere, every picture is there, nothing is loaded from elsewhere, and the page of options
+has them all. usage: site_test.py IGSP SITE_FOLDER. Exit code 77, "skipped", where MkDocs Material is not installed.
 """
 import json
 import os
@@ -76,7 +76,8 @@ def main() -> None:
     faults = faults_of(site.resolve())
     listed = json.loads(subprocess.run([igsp, "options", "--json"], capture_output=True, text=True, check=True).stdout)
     options = (site / "options/index.html").read_text()
-    faults += [f"options: {option['flag']} is not there" for option in listed if f"<code>{option['flag']}</code>" not in options]
+    faults += [f"options: {option['flag']} is not there" for option in listed
+               if f"<code>{option['flag']}</code>" not in options]
     if faults:
         sys.exit("\n".join(faults))
     print(f"{len(list(site.rglob('*.html')))} pages in {site}")

@@ -1,10 +1,12 @@
-"""What the README and the documentation show works as printed. A page's blocks run in their order, in a folder of the page's
-own, where the simulated scans source.ply and target.ply stand for those of the reader:
-- console: lines "$ igsp ..." must end with exit code 0, or N where the line says "# exit code N"; output that is shown below a
-  line must be what comes out, "..." standing for anything and numbers being near. Of "$ make NAME" the target must exist. Other lines are not run.
-- cpp: compiled against the installed package and run. A block without main() gets one, with two clouds `source`, `target`.
-- csv: written to the file that the text before it names last, in backticks, as in `cases.csv`. If `igsp benchmark` ran, its
-  answers must all have been right.
+"""What the README and the documentation show works as printed. A page's blocks run in their order, in a folder of the
+page's own, where the simulated scans source.ply and target.ply stand for those of the reader:
+- console: lines "$ igsp ..." must end with exit code 0, or N where the line says "# exit code N". Output that is shown
+  below a line must be what comes out, "..." standing for anything and numbers being near. Of "$ make NAME" the target
+  must exist. Other lines are not run.
+- cpp: compiled against the installed package and run. A block without main() gets one, with two clouds `source` and
+  `target`.
+- csv: written to the file that the text before it names last, in backticks, as in `cases.csv`. If `igsp benchmark` ran,
+  its answers must all have been right.
 - python: run by the interpreter that --python names. Without --python these blocks are left to the run that has it.
 A block whose title ends in "(not run)" shows another program's interface; Python is checked for its syntax, C++ is not.
 """
@@ -93,8 +95,9 @@ def run(command, **keywords) -> None:
 
 def matches(shown: str, printed: str) -> bool:
     """Words as they are, "..." for anything, and numbers within a fifth: better constants do not make the page wrong."""
-    pattern = "".join(r"(?:.*)" if part == "..." else f"({NUMBER})" if re.fullmatch(NUMBER, part) else re.escape(part)
-                      for part in re.split(rf"(\.\.\.|{NUMBER})", shown))
+    parts = re.split(rf"(\.\.\.|{NUMBER})", shown)
+    pattern = "".join(".*" if part == "..." else f"({NUMBER})" if re.fullmatch(NUMBER, part) else re.escape(part)
+                      for part in parts)
     match = re.fullmatch(pattern, printed, re.DOTALL)
     numbers = [float(number) for number in re.findall(rf"\.\.\.|({NUMBER})", shown) if number]
     return match is not None and all(abs(float(found) - number) <= max(0.2 * abs(number), 0.01)
