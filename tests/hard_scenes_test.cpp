@@ -162,7 +162,7 @@ void add_outliers(Points& points, double share, Random& random) {
 
 TEST(HardScenes, OutliersOfThirtyPercent) {
   for (const char* scene : {"park", "indoor", "object"}) {
-    for (const int points : {20000, 100000}) {
+    for (const int points : {50000, 100000}) {
       SCOPED_TRACE(::testing::Message() << scene << " " << points);
       Pair pair = scrambled_pair(scene, points, 1);
       Random random(1);

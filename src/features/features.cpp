@@ -6,6 +6,7 @@
 #include "features/keypoints.hpp"
 #include "features/reference_frame.hpp"
 #include "spatial/scale.hpp"
+#include "spatial/scatter_filter.hpp"
 #include "spatial/voxel_grid.hpp"
 
 namespace igsp {
@@ -41,6 +42,9 @@ Features extract_features(PointView cloud, const Options& options, const Progres
   const Bounds bounds = bounds_of(cloud, "cloud");
   features.voxel_size = choose_voxel_size(cloud, cloud, options.scale);
   features.origin = centre_of(bounds);
+  const ScatterFilter filter(cloud, bounds, scatter_density(cloud, bounds), scatter_cell * features.voxel_size);
+  const Points kept = filter.keeps_all() ? Points() : without_scatter(cloud, filter);
+  if (!filter.keeps_all()) cloud = kept;
   // Voxel boundaries start at the corner, which moves exactly with the cloud.
   features.points = voxel_centroids(cloud, bounds.min, features.voxel_size);
   const Eigen::Vector3d to_centre = 0.5 * (bounds.max - bounds.min);

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "igsp/errors.hpp"
+#include "spatial/cell_hash.hpp"
+#include "spatial/scatter_filter.hpp"
 
 namespace igsp {
 namespace {
@@ -17,18 +19,16 @@ constexpr double max_voxels_per_point = 0.6;   // above it the voxels would only
 constexpr int max_steps = 16;                  // dense clouds need 3 to 5, those limited by their spacing up to 12
 constexpr double max_voxels_across = 1 << 18;  // a quarter of what the voxel filter holds: few places ask for more
 
-// Number of occupied voxels by linear counting (Whang et al. 1990): n = -M ln(share of empty slots in a map of M).
-double count_voxels(PointView cloud, const Bounds& bounds, double voxel_size) {
+// Number of occupied voxels, without those of scattered noise, by linear counting (Whang et al. 1990): n = -M ln(share
+// of empty slots in a map of M).
+double count_voxels(PointView cloud, const Bounds& bounds, double noise_density, double voxel_size) {
   constexpr std::size_t slots = std::size_t{1} << 18;
   std::vector<std::uint64_t> map(slots / 64, 0);
   const double inverse = 1.0 / voxel_size;
+  const ScatterFilter filter(cloud, bounds, noise_density, scatter_cell * voxel_size);
   for (const Eigen::Vector3d& point : cloud) {
-    const Eigen::Vector3d cell = (point - bounds.min) * inverse;
-    std::uint64_t key = static_cast<std::uint64_t>(cell.x()) * 0x9E3779B97F4A7C15ull ^
-                        static_cast<std::uint64_t>(cell.y()) * 0xC2B2AE3D27D4EB4Full ^
-                        static_cast<std::uint64_t>(cell.z()) * 0x165667B19E3779F9ull;
-    key = (key ^ (key >> 29)) * 0xBF58476D1CE4E5B9ull;
-    const std::size_t slot = key >> 46;
+    if (!filter.keeps(point)) continue;
+    const std::size_t slot = cell_hash((point - bounds.min) * inverse) >> 46;
     map[slot / 64] |= std::uint64_t{1} << (slot % 64);
   }
   std::size_t occupied = 0;
@@ -54,7 +54,9 @@ Bounds bounds_of(PointView cloud, std::string_view name) {
   return bounds;
 }
 
-Eigen::Vector3d centre_of(const Bounds& bounds) { return bounds.min + 0.5 * (bounds.max - bounds.min); }
+Eigen::Vector3d centre_of(const Bounds& bounds) {
+  return bounds.min + 0.5 * (bounds.max - bounds.min);
+}
 
 double choose_voxel_size(PointView source, PointView target, const ScaleOptions& options) {
   if (options.voxel_size > 0) return options.voxel_size;
@@ -63,14 +65,16 @@ double choose_voxel_size(PointView source, PointView target, const ScaleOptions&
   const double extent = std::max(source_bounds.diagonal(), target_bounds.diagonal());
   if (extent == 0) throw InvalidArgument("all points coincide in both clouds; set voxel_size to align them");
 
+  const double source_noise = scatter_density(source, source_bounds);
+  const double target_noise = scatter_density(target, target_bounds);
   double voxel_size = extent / 200;
   for (int step = 0; step < max_steps; ++step) {
-    const double n_source = count_voxels(source, source_bounds, voxel_size);
-    const double n_target = count_voxels(target, target_bounds, voxel_size);
+    const double n_source = count_voxels(source, source_bounds, source_noise, voxel_size);
+    const double n_target = count_voxels(target, target_bounds, target_noise, voxel_size);
     // A surface has about 1/v^2 voxels, hence the square root.
     const double to_count = std::sqrt(std::sqrt(n_source * n_target) / options.target_points);
-    const double to_spacing = std::sqrt(std::max(n_source / (max_voxels_per_point * source.size()),
-                                                 n_target / (max_voxels_per_point * target.size())));
+    const double to_spacing = std::sqrt(
+        std::max(n_source / (max_voxels_per_point * source.size()), n_target / (max_voxels_per_point * target.size())));
     const double factor = std::max(to_count, to_spacing);
     voxel_size = std::max(factor * voxel_size, extent / max_voxels_across);
     if (std::abs(factor - 1) < 0.01) break;

@@ -1,0 +1,99 @@
+#include "spatial/scatter_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/core_testing.hpp"
+
+namespace igsp {
+namespace {
+
+using testing::Random;
+
+constexpr double side = 10.0;
+
+Points uniform_in_box(std::size_t count, std::uint64_t seed) {
+  Random random(seed);
+  Points points;
+  for (std::size_t i = 0; i < count; ++i)
+    points.push_back(random.in_cube(side / 2) + Eigen::Vector3d::Constant(side / 2));
+  return points;
+}
+
+/// Floor and one wall of the box.
+Points two_walls(std::size_t count, std::uint64_t seed) {
+  Points points = uniform_in_box(count, seed);
+  for (std::size_t i = 0; i < count; ++i) points[i][i % 2 == 0 ? 2 : 0] = 0.01 * points[i][i % 2 == 0 ? 2 : 0];
+  return points;
+}
+
+Points together(Points a, const Points& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+ScatterFilter filter_of(const Points& cloud, double cell_size) {
+  const Bounds bounds = bounds_of(cloud, "cloud");
+  return ScatterFilter(cloud, bounds, scatter_density(cloud, bounds), cell_size);
+}
+
+TEST(ScatterFilter, SurfacesAloneAreKept) {
+  const Points walls = two_walls(50000, 1);
+  EXPECT_TRUE(filter_of(walls, 0.3).keeps_all());
+  EXPECT_EQ(without_scatter(walls, filter_of(walls, 0.3)).size(), walls.size());
+}
+
+TEST(ScatterFilter, DensityOfTheNoiseIsBounded) {
+  const Points cloud = together(two_walls(50000, 1), uniform_in_box(15000, 2));
+  const double density = scatter_density(cloud, bounds_of(cloud, "cloud"));
+  const double truth = 15000 / (side * side * side);
+  EXPECT_GT(density, 0.9 * truth);
+  EXPECT_LT(density, 2.0 * truth);  // a bound: it holds the walls as well
+}
+
+TEST(ScatterFilter, NoiseGoesAndSurfacesStay) {
+  const Points walls = two_walls(50000, 1), noise = uniform_in_box(15000, 2);
+  for (const double cell_size : {0.3, 0.6}) {
+    SCOPED_TRACE(cell_size);
+    const ScatterFilter filter = filter_of(together(walls, noise), cell_size);
+    ASSERT_FALSE(filter.keeps_all());
+    EXPECT_GT(without_scatter(walls, filter).size(), 0.97 * walls.size());
+    EXPECT_LT(without_scatter(noise, filter).size(),
+              0.15 * noise.size());  // what lies beside a wall cannot be told from it
+  }
+}
+
+TEST(ScatterFilter, LengthUnitDoesNotMatter) {
+  Points cloud = together(two_walls(20000, 3), uniform_in_box(6000, 4));
+  const std::size_t kept = without_scatter(cloud, filter_of(cloud, 0.4)).size();
+  for (Eigen::Vector3d& point : cloud) point *= 1024;
+  EXPECT_EQ(without_scatter(cloud, filter_of(cloud, 0.4 * 1024)).size(), kept);
+}
+
+TEST(ScatterFilter, FlatCountryIsKept) {
+  Points terrain = uniform_in_box(20000, 6);
+  for (Eigen::Vector3d& point : terrain) {
+    point.head<2>() *= 100;
+    point.z() = 10 * std::sin(0.01 * point.x()) + 10 * std::cos(0.013 * point.y());
+  }
+  for (const double cell_size : {10.0, 30.0}) EXPECT_TRUE(filter_of(terrain, cell_size).keeps_all()) << cell_size;
+}
+
+TEST(ScatterFilter, DegenerateCloudsAreKept) {
+  const Points same(100, Eigen::Vector3d(1, 2, 3));
+  EXPECT_TRUE(filter_of(same, 0.1).keeps_all());
+  const Points one{{1, 2, 3}};
+  EXPECT_TRUE(filter_of(one, 0.1).keeps_all());
+  Points line, plane;
+  Random random(5);
+  for (int i = 0; i < 5000; ++i) {
+    line.emplace_back(0.01 * i, 0, 0);
+    plane.push_back(random.in_cube(5).cwiseProduct(Eigen::Vector3d(1, 1, 0)));
+  }
+  EXPECT_TRUE(filter_of(line, 0.1).keeps_all());
+  EXPECT_TRUE(filter_of(plane, 0.3).keeps_all());
+}
+
+}  // namespace
+}  // namespace igsp
