@@ -21,10 +21,9 @@ constexpr const char* registration_header =
     "dense_iteration_s,rotation_error_deg,translation_error_m,centroid_displacement_m,right,registered,confidence,"
     "termination\n";
 constexpr const char* iteration_header =
-    "pair,dataset,preset,k,w_fd,w_ed,t_cd,candidate_edges,matches,correct,possible,precision,recall,precision_within_r_"
-    "k,energy,edges_s,"
-    "sparse_s,matrix_s,dense_s,rotation_step_deg,translation_step_m,rotation_error_deg,centroid_displacement_m,"
-    "r00,r01,r02,t0,r10,r11,r12,t1,r20,r21,r22,t2\n";
+    "pair,dataset,preset,k,w_fd,w_ed,t_cd,candidate_edges,matches,correct,possible,precision,recall,"
+    "precision_within_r_k,energy,edges_s,sparse_s,matrix_s,dense_s,rotation_step_deg,translation_step_m,"
+    "rotation_error_deg,centroid_displacement_m,r00,r01,r02,t0,r10,r11,r12,t1,r20,r21,r22,t2\n";
 
 struct Tables {
   std::string registrations = registration_header, iterations = iteration_header;

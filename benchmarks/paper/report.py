@@ -115,9 +115,10 @@ def growth_table(growth: list[Row]) -> str:
     for row in growth:
         dense = "" if row["dense_s"] == "" else row["matrix_s"] + row["dense_s"]
         ours = row["edges_s"] + row["sparse_s"]
-        lines.append([f"{row['keypoints']:,}", str(row["k"]), f"{row['candidate_edges']:,}", figure(1000 * ours),
+        lines.append([f"{row['keypoints']:,}", str(row["k"]), f"{row['t_cd']:.0f}", f"{row['candidate_edges']:,}",
+                      figure(1000 * ours),
                       *(["not run", "-"] if dense == "" else [figure(1000 * dense), f"{dense / ours:,.0f}"])])
-    return markdown(["keypoints", "k", "candidate pairs", "sparse [ms]", "dense [ms]", "ratio"], lines)
+    return markdown(["keypoints", "k", "T_cd [bits]", "candidate pairs", "sparse [ms]", "dense [ms]", "ratio"], lines)
 
 
 def last_precision_table(iterations: list[Row]) -> str:
