@@ -1,5 +1,5 @@
-"""What the documentation site (mkdocs.yml) adds to its pages: the table of options, from the igsp command
-itself, and the changelog.
+"""What the documentation site (mkdocs.yml) adds to its pages: the table of options, from the igsp command itself, the
+changelog, and every decision in the navigation.
 
 IGSP in the environment is the command to ask; without it, the one in build/release.
 """
@@ -48,6 +48,15 @@ def on_page_markdown(markdown: str, **_: object) -> str:
         if place in markdown:
             markdown = markdown.replace(place, text())
     return markdown
+
+
+def on_config(config, **_: object):
+    """All decisions in the order of their numbers, so that a new one needs no line elsewhere."""
+    for entry in config["nav"]:
+        if "Decisions" in entry:
+            pages = sorted((ROOT / "docs/decisions").glob("*.md"))
+            entry["Decisions"] = [str(page.relative_to(ROOT / "docs")) for page in pages]
+    return config
 
 
 def on_files(files, **_: object):

@@ -103,7 +103,8 @@ class Zsh(ShellTest, unittest.TestCase):
     shell = "zsh"
 
     SETUP = ("PS1=; LISTMAX=1000; autoload -Uz compinit; compinit -u -D; source ./completion; "
-             "bindkey '^I' list-choices; finish() { print FINISHED; exit }; zle -N finish; bindkey '^X' finish; print RE''ADY\n")
+             "bindkey '^I' list-choices; finish() { print FINISHED; exit }; zle -N finish; bindkey '^X' finish; "
+             "print RE''ADY\n")
 
     def offered(self, line: str) -> set[str]:
         """What a zsh in a terminal of its own lists when Tab is pressed after the line."""

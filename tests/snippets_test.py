@@ -94,7 +94,7 @@ def run(command, **keywords) -> None:
 
 
 def matches(shown: str, printed: str) -> bool:
-    """Words as they are, "..." for anything, and numbers within a fifth: better constants do not make the page wrong."""
+    """Words as they are, "..." for anything, numbers within a fifth: better constants do not make the page wrong."""
     parts = re.split(rf"(\.\.\.|{NUMBER})", shown)
     pattern = "".join(".*" if part == "..." else f"({NUMBER})" if re.fullmatch(NUMBER, part) else re.escape(part)
                       for part in parts)
