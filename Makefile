@@ -32,7 +32,7 @@ test: build
 # The Python package, into dist/.
 wheel: setup
 	/usr/bin/python3 -m venv build/wheel
-	build/wheel/bin/pip wheel . --no-deps --wheel-dir dist
+	CXX=c++ build/wheel/bin/pip wheel . --no-deps --wheel-dir dist  # the compiler of the presets: ccache knows its objects
 
 asan tsan: setup
 	cmake --preset $@
