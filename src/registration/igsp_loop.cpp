@@ -71,7 +71,13 @@ LoopOutcome igsp_loop(const LoopInput& input, const Transformation& initial, con
     matched = correspondences_of(assignment, keypoints);
     const auto step = fit_step(matched, keypoints, schedule.fit_scale * input.voxel_size, options.degrees_of_freedom);
 
-    IterationRecord record{k, weights.fd, weights.ed, threshold, edges.size(), matched.size()};
+    IterationRecord record;
+    record.k = k;
+    record.w_fd = weights.fd;
+    record.w_ed = weights.ed;
+    record.t_cd = threshold;
+    record.candidate_edges = edges.size();
+    record.matches = matched.size();
     record.energy = matching_energy(assignment, keypoints, threshold);  // Eq. 1
     for (const Correspondence& c : matched) record.correspondences.push_back({c.source, c.target});
     if (step) {

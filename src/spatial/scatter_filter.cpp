@@ -1,6 +1,7 @@
 #include "spatial/scatter_filter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -10,12 +11,13 @@ namespace igsp {
 namespace {
 
 constexpr int slot_bits = 18;
-constexpr std::size_t max_sample = 20000;
-constexpr double coarsest = 16, finest = 256;  // cells along the diagonal
+constexpr std::size_t max_sample = 200000;                  // of more points every second, third, ... is looked at
+constexpr std::array<double, 3> cells_across{16, 64, 256};  // along the diagonal
 constexpr double min_layers = 4;      // across the thinnest side: in a flat box a surface alone looks as dense as noise
 constexpr double max_occupied = 0.8;  // more says too little about what is empty
-constexpr double sigmas = 4.0;        // of the noise's Poisson distribution
+constexpr double sigmas = 3.0;        // of the noise's Poisson distribution
 constexpr double min_kept = 0.6;      // what is most of the cloud is no noise
+constexpr double max_kept = 0.98;     // less noise does no harm, and the lone far points of a clean scan are worth keeping
 
 struct Occupancy {
   double occupied, cells;
@@ -37,7 +39,7 @@ Occupancy occupancy(PointView cloud, std::size_t stride, const Bounds& bounds, d
 double scatter_density(PointView cloud, const Bounds& bounds) {
   const std::size_t stride = std::max<std::size_t>(1, cloud.size() / max_sample);
   double density = std::numeric_limits<double>::infinity();
-  for (double across = coarsest; across <= finest; across *= 2) {
+  for (const double across : cells_across) {
     const double cell_size = bounds.diagonal() / across;
     if ((bounds.max - bounds.min).minCoeff() < min_layers * cell_size) continue;
     const Occupancy found = occupancy(cloud, stride, bounds, cell_size);
@@ -58,7 +60,8 @@ ScatterFilter::ScatterFilter(PointView cloud, const Bounds& bounds, double densi
   for (const Eigen::Vector3d& point : cloud) ++counts_[slot_of(point)];
   std::size_t kept = 0;
   for (const std::uint32_t count : counts_) kept += count >= least_count_ ? count : 0;
-  if (static_cast<double>(kept) < min_kept * static_cast<double>(cloud.size())) least_count_ = 1;
+  const double share = static_cast<double>(kept) / static_cast<double>(cloud.size());
+  if (share < min_kept || share > max_kept) least_count_ = 1;
 }
 
 std::size_t ScatterFilter::slot_of(const Eigen::Vector3d& point) const {

@@ -22,7 +22,7 @@ class ScatterFilter {
   /// Counts the cloud's points in cubic cells, where that can make a difference. `cell_size` > 0.
   ScatterFilter(PointView cloud, const Bounds& bounds, double density, double cell_size);
 
-  /// No noise to speak of, or what would go is most of the cloud.
+  /// No noise to speak of, or so much would go that it is no noise.
   bool keeps_all() const { return least_count_ <= 1; }
   bool keeps(const Eigen::Vector3d& point) const { return keeps_all() || counts_[slot_of(point)] >= least_count_; }
 
