@@ -4,7 +4,7 @@ jobs := $(shell nproc)
 igsp := build/release/bin/igsp
 demo := build/demo
 
-.PHONY: all build setup demo test bench bench-peers calibrate asan tsan fuzz format install clean
+.PHONY: all build setup demo test deb docs wheel bench bench-peers calibrate paper asan tsan fuzz format install clean
 
 all: build
 
@@ -23,8 +23,16 @@ demo: setup
 	$(igsp) align $(demo)/station_1.ply $(demo)/station_0.ply --transform $(demo)/estimate.txt
 	$(igsp) evaluate --transform $(demo)/estimate.txt --truth $(demo)/station_1_to_0.txt --source $(demo)/station_1.ply
 
+# dpkg-dev and fakeroot make and install the packages, the shells and mandoc judge completion and manual page, MkDocs
+# builds the site.
 test: build
+	@scripts/setup.sh dpkg-dev fakeroot fish man-db mandoc mkdocs-material zsh
 	ctest --preset release -j $(jobs)
+
+# The Python package, into dist/.
+wheel: setup
+	/usr/bin/python3 -m venv build/wheel
+	CXX=c++ build/wheel/bin/pip wheel . --no-deps --wheel-dir dist  # the compiler of the presets: ccache knows its objects
 
 asan tsan: setup
 	cmake --preset $@
@@ -60,6 +68,26 @@ calibrate:
 	build/release/bin/igsp_calibrate --pairs 1000 --jobs $(jobs) --out docs/data/calibration.csv
 	/usr/bin/python3 benchmarks/calibration/reliability.py
 
+# What docs/paper/ shows: the paper's tables and figures, with the real scans in `scans` if they are there. About ten
+# minutes of one core.
+scans ?= ../shared/data
+paper_data := docs/paper/data
+paper:
+	@scripts/setup.sh python3-matplotlib libpcl-dev
+	cmake --preset release -DIGSP_BUILD_BENCHMARKS=ON -DIGSP_BUILD_PEERS=ON
+	cmake --build --preset release --target igsp_paper pcl_peer
+	mkdir -p $(paper_data)
+	grep -m1 -oP 'model name\s*: \K.*' /proc/cpuinfo > $(paper_data)/machine.txt || uname -m > $(paper_data)/machine.txt
+	build/release/bin/igsp_paper pairs --scans $(scans) --pairs build/paper
+	cp build/paper/cases.csv $(paper_data)/pairs.csv
+	build/release/bin/igsp_paper registrations --pairs build/paper --data $(paper_data)
+	build/release/bin/igsp_paper parameters --pairs build/paper --data $(paper_data)
+	build/release/bin/igsp_paper growth --data $(paper_data)
+	/usr/bin/python3 benchmarks/paper/run_peers.py --program build/release/bin/pcl_peer --pairs build/paper --data $(paper_data)
+	/usr/bin/python3 benchmarks/paper/figures.py --data $(paper_data) --out docs/paper
+	/usr/bin/python3 benchmarks/paper/pictures.py --pairs build/paper --data $(paper_data) --out docs/paper
+	/usr/bin/python3 benchmarks/paper/report.py --data $(paper_data) --out docs/paper/README.md
+
 # New inputs land in build/fuzz/inputs; a crash is written beside the Makefile and stops the run.
 fuzz_seconds ?= 60
 fuzz:
@@ -75,6 +103,20 @@ format:
 
 install: build
 	cmake --install build/release --prefix $(PREFIX)
+
+# build/deb/igsp_*.deb, the command, and build/deb/libigsp-dev_*.deb, the library to build with.
+deb: setup
+	@scripts/setup.sh dpkg-dev
+	cmake --preset release
+	cmake --build --preset release --target igsp_app
+	cpack --config build/release/CPackConfig.cmake -B build/deb
+
+# The documentation site, build/site/index.html, with its links checked.
+docs: setup
+	@scripts/setup.sh mkdocs-material
+	cmake --preset release
+	cmake --build --preset release --target igsp_app
+	/usr/bin/python3 tests/site_test.py $(igsp) build/site
 
 clean:
 	rm -rf build

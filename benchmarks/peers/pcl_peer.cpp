@@ -3,8 +3,8 @@
 //   pcl_peer METHOD SOURCE TARGET --voxel-size V [--seed N] [--threads N] [--overlap O] [--time-limit S]
 //
 // METHOD is one of
-//   icp                    point-to-point ICP from aligned centroids
-//   ndt                    3D-NDT from aligned centroids
+//   icp                    point-to-point ICP from aligned centroids, or with --as-given from where the clouds lie
+//   ndt                    3D-NDT, the same
 //   prerejective           FPFH, SampleConsensusPrerejective
 //   geometric_consistency  FPFH, mutual nearest neighbours, GeometricConsistencyGrouping
 //   kfpcs                  ISS keypoints, KFPCSInitialAlignment
@@ -87,6 +87,7 @@ int main(int argc, char** argv) {
   std::string method, source_path, target_path;
   Settings settings;
   unsigned seed = 0;
+  bool as_given = false;
   app.add_option("METHOD", method)->required()->check(CLI::IsMember(method_names()));
   app.add_option("SOURCE", source_path)->required();
   app.add_option("TARGET", target_path)->required();
@@ -94,6 +95,7 @@ int main(int argc, char** argv) {
   app.add_option("--seed", seed, "of rand(); kfpcs takes the clock instead, whatever is given");
   app.add_option("--threads", settings.threads)->check(CLI::PositiveNumber);
   app.add_option("--overlap", settings.overlap, "what kfpcs is told; default 0.5, as in PCL");
+  app.add_flag("--as-given", as_given, "start from where the clouds lie, not from aligned centroids");
   app.add_option("--time-limit", settings.time_limit_s, "of kfpcs, by the clock [s]; default 60");
   try {
     app.parse(argc, argv);
@@ -103,7 +105,8 @@ int main(int argc, char** argv) {
   try {
     const igsp::Points source = igsp::read_points(source_path).points, target = igsp::read_points(target_path).points;
     if (source.empty() || target.empty()) throw igsp::FileError("a cloud without points");
-    const Eigen::Vector3d source_centroid = centroid_of(source), target_centroid = centroid_of(target);
+    const Eigen::Vector3d target_centroid = centroid_of(target);
+    const Eigen::Vector3d source_centroid = as_given ? target_centroid : centroid_of(source);
     const Cloud::Ptr moving = centred(source, source_centroid), fixed = centred(target, target_centroid);
     std::srand(seed);
     nlohmann::json answers = nlohmann::json::array();
