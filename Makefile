@@ -4,7 +4,7 @@ jobs := $(shell nproc)
 igsp := build/release/bin/igsp
 demo := build/demo
 
-.PHONY: all build setup demo test bench bench-peers calibrate paper asan tsan fuzz format install clean
+.PHONY: all build setup demo test deb docs wheel bench bench-peers calibrate paper asan tsan fuzz format install clean
 
 all: build
 
@@ -23,8 +23,16 @@ demo: setup
 	$(igsp) align $(demo)/station_1.ply $(demo)/station_0.ply --transform $(demo)/estimate.txt
 	$(igsp) evaluate --transform $(demo)/estimate.txt --truth $(demo)/station_1_to_0.txt --source $(demo)/station_1.ply
 
+# dpkg-dev and fakeroot make and install the packages, the shells and mandoc judge completion and manual page, MkDocs
+# builds the site.
 test: build
+	@scripts/setup.sh dpkg-dev fakeroot fish man-db mandoc mkdocs-material zsh
 	ctest --preset release -j $(jobs)
+
+# The Python package, into dist/.
+wheel: setup
+	/usr/bin/python3 -m venv build/wheel
+	CXX=c++ build/wheel/bin/pip wheel . --no-deps --wheel-dir dist  # the compiler of the presets: ccache knows its objects
 
 asan tsan: setup
 	cmake --preset $@
@@ -95,6 +103,20 @@ format:
 
 install: build
 	cmake --install build/release --prefix $(PREFIX)
+
+# build/deb/igsp_*.deb, the command, and build/deb/libigsp-dev_*.deb, the library to build with.
+deb: setup
+	@scripts/setup.sh dpkg-dev
+	cmake --preset release
+	cmake --build --preset release --target igsp_app
+	cpack --config build/release/CPackConfig.cmake -B build/deb
+
+# The documentation site, build/site/index.html, with its links checked.
+docs: setup
+	@scripts/setup.sh mkdocs-material
+	cmake --preset release
+	cmake --build --preset release --target igsp_app
+	/usr/bin/python3 tests/site_test.py $(igsp) build/site
 
 clean:
 	rm -rf build

@@ -6,7 +6,10 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build
   libeigen3-dev libnanoflann-dev libtbb-dev libfmt-dev liblzf-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev
+  libjs-three libjs-chart.js
   libgtest-dev librapidcheck-dev libbenchmark-dev liblemon-dev python3 python3-numpy python3-scipy
+  python3-dev python3-venv ccache
+  chromium chromium-driver python3-selenium
   "$@"
 )
 

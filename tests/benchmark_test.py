@@ -74,7 +74,7 @@ class Answers(BenchmarkTest):
             self.assertLess(float(row["centroid_displacement"]), 0.3)
         # The pair lies as it belongs: only if the scramble is folded into the truth rightly is the error tiny.
         self.assertLess(float(same["e_r_deg"]), 0.01)
-        self.assertLess(float(same["e_t"]), 0.001)
+        self.assertLess(float(same["e_t"]), 0.005)  # of hundreds of metres; a voxel is 0.8 m
         for key in ["confidence", "overlap", "precision", "recall", "iterations", "source_keypoints",
                     "target_keypoints", "voxel_size", "cpu_seconds", "wall_seconds", "peak_memory_bytes"]:
             self.assertGreater(float(good[key]), 0, key)

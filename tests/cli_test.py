@@ -123,7 +123,8 @@ class Align(CommandTest):
         self.assertGreater(len(report["iterations"]), 0)
         for record in report["iterations"]:
             self.assertEqual(set(record), {"k", "w_fd", "w_ed", "t_cd", "candidate_edges", "matches", "energy",
-                                           "rotation_step_rad", "translation_step", "seconds", "target_from_source"})
+                                           "rotation_step_rad", "translation_step", "seconds", "target_from_source",
+                                           "correspondences"})
         self.assertEqual(np.array(report["precision"]["information"]).shape, (6, 6))
         self.assertGreater(report["evidence"]["agreeing_matches"], 3)
         self.assertIn("read", report["timings_s"])
@@ -306,7 +307,7 @@ class BadInput(CommandTest):
         self.assertIn("different units", json.loads((self.folder / "r.json").read_text())["warnings"][0])
 
     def test_outputs_that_cannot_be_written_are_refused_before_reading(self):
-        for flag in ["-o", "--transform", "--report"]:
+        for flag in ["-o", "--transform", "--report", "--html"]:
             for path in ["nowhere/x.ply", "/proc/x.ply", "/dev/full"]:
                 self.refuses("align", "missing.ply", "missing.ply", flag, path, code=3, saying=path)
             self.refuses("align", "missing.ply", "missing.ply", flag, self.folder, code=3, saying=str(self.folder))

@@ -83,7 +83,7 @@ def faults(root):
             if not path.stem.endswith("_test"):  # tests may look down from anywhere
                 yield from check_layer_includes(root, path, ALLOWED[folder.name])
                 yield from check_quiet(root, path)
-    for path in sources(root / "apps"):
+    for path in sources(root / "apps") + sources(root / "python"):
         yield from check_layer_includes(root, path, APPS_ALLOWED)
     for path in sources(root / "include"):
         yield from check_public_includes(root, path)

@@ -10,14 +10,17 @@
 #include "cloud_input.hpp"
 #include "commands.hpp"
 #include "exit_codes.hpp"
+#include "foreign_formats.hpp"
 #include "help_text.hpp"
 #include "igsp/align.hpp"
 #include "igsp/errors.hpp"
+#include "igsp/io.hpp"
 #include "interrupt.hpp"
 #include "option_flags.hpp"
 #include "output_file.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
+#include "report_page.hpp"
 
 namespace igsp::cli {
 namespace {
@@ -26,8 +29,8 @@ namespace fs = std::filesystem;
 
 struct AlignSettings {
   fs::path source, target;
-  fs::path aligned, transformation, report;  // empty: not wanted
-  fs::path initial;                          // empty: no guess
+  fs::path aligned, transformation, report, html;  // empty: not wanted
+  fs::path initial;                                // empty: no guess
   std::int64_t max_points = 20'000'000;
   bool force = false, quiet = false, verbose = false;
   std::shared_ptr<OptionFlags> option_flags;
@@ -44,9 +47,16 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-bool same_file(const fs::path& a, const fs::path& b) {
-  std::error_code ignored;
-  return fs::weakly_canonical(fs::absolute(a), ignored) == fs::weakly_canonical(fs::absolute(b), ignored);
+// A survey format is written only from a source of the same format: it keeps what belongs to the points.
+void check_output_format(const AlignSettings& settings) {
+  if (moves_foreign(settings.source, settings.aligned)) return;
+  if (reads_foreign(settings.aligned)) {
+    throw InvalidArgument(fmt::format("-o {}: {} is written only from a SOURCE of the same format, not from {}",
+                                      settings.aligned.string(), settings.aligned.extension().string(),
+                                      settings.source.string()));
+  }
+  check_not_foreign(settings.aligned);
+  format_of(settings.aligned);
 }
 
 // Everything that can be known to fail does so before the long run.
@@ -56,7 +66,8 @@ void check_outputs(const AlignSettings& settings) {
                                                                     {"--initial", settings.initial},
                                                                     {"-o", settings.aligned},
                                                                     {"--transform", settings.transformation},
-                                                                    {"--report", settings.report}};
+                                                                    {"--report", settings.report},
+                                                                    {"--html", settings.html}};
   for (std::size_t i = 3; i < files.size(); ++i) {  // after the inputs
     const auto& [name, path] = files[i];
     if (path.empty()) continue;
@@ -66,7 +77,7 @@ void check_outputs(const AlignSettings& settings) {
     }
     check_writable(path);
   }
-  if (!settings.aligned.empty()) format_of(settings.aligned);
+  if (!settings.aligned.empty()) check_output_format(settings);
 }
 
 std::vector<std::string> warnings_about(const CloudInput& source, const CloudInput& target) {
@@ -105,14 +116,19 @@ bool floats_suffice(PointView points, double voxel_size) {
 }
 
 void write_aligned(const AlignSettings& settings, Points points, const Result& result) {
+  if (moves_foreign(settings.source, settings.aligned)) {
+    return write_moved_foreign(settings.source, settings.aligned, result.target_from_source);
+  }
   for (Eigen::Vector3d& point : points) point = result.target_from_source * point;
   write_points(settings.aligned, points,
                {.format = format_of(settings.aligned), .single_precision = floats_suffice(points, result.voxel_size)});
 }
 
-// The report says what happened in any case; the other files exist only for an answer to rely on, unless forced.
-void write_outputs(const AlignSettings& settings, const Result& result, const Json& report, CloudInput& source) {
-  if (!settings.report.empty()) write_text(settings.report, report.dump(2) + "\n");
+// The reports say what happened in any case; the other files exist only for an answer to rely on, unless forced.
+void write_outputs(const AlignSettings& settings, const Result& result, const Json& report, CloudInput& source,
+                   const CloudInput& target) {
+  if (!settings.report.empty()) write_text(settings.report, report_text(report));
+  if (!settings.html.empty()) write_text(settings.html, report_page(report, source.points, target.points));
   const bool wanted = !settings.aligned.empty() || !settings.transformation.empty();
   if (!wanted) return;
   if (!result.has_estimate || !(result.registered || settings.force)) {
@@ -143,7 +159,7 @@ int run_align(const AlignSettings& settings) {
   const auto max_points = static_cast<std::size_t>(settings.max_points);
   CloudInput source = read_cloud(settings.source, max_points, "read source", progress);
   CloudInput target = read_cloud(settings.target, max_points, "read target", progress);
-  if (!source.whole() && !settings.aligned.empty()) {
+  if (!source.whole() && !settings.aligned.empty() && !moves_foreign(settings.source, settings.aligned)) {
     throw InvalidArgument(fmt::format("-o needs all points in memory: {} has {}, --max-points is {}",
                                       source.path.string(), source.total, settings.max_points));
   }
@@ -163,7 +179,7 @@ int run_align(const AlignSettings& settings) {
   }
   std::cout << answer_text(result, options.scale.voxel_size > 0.0, now_s() - start);
   if (settings.verbose) std::cout << details_text(result);
-  write_outputs(settings, result, align_report(result, source, target, cpu_seconds, warnings), source);
+  write_outputs(settings, result, align_report(result, source, target, cpu_seconds, warnings), source, target);
   return result.registered ? exit_registered : exit_not_registered;
 }
 
@@ -173,7 +189,8 @@ constexpr const char* examples =
     "  igsp align a.pcd b.xyz --preset paper --voxel-size 0.1 -o aligned.ply --transform T.txt --report run.json\n"
     "  igsp align a.ply b.ply --config igsp.toml --threads 4\n"
     "The options start from --preset or --config; flags override them. Exit codes: 0 registered, 1 not registered,\n"
-    "2 usage or option, 3 input or output, 130 interrupted. PLY, PCD and text (XYZ, TXT, CSV, PTS) are read, written.";
+    "2 usage or option, 3 input or output, 130 interrupted. PLY, PCD and text (XYZ, TXT, CSV, PTS) are read, written;\n"
+    "the command of the Python package also takes LAS, LAZ, E57 and PTX, and writes them moved, their attributes kept.";
 
 }  // namespace
 
@@ -187,6 +204,8 @@ void add_align_command(CLI::App& app, Command& command) {
       ->type_name("FILE");
   align->add_option("--transform", settings->transformation, "write target_from_source, 4x4 text")->type_name("FILE");
   align->add_option("--report", settings->report, "write the whole answer as JSON, whatever the verdict")
+      ->type_name("FILE");
+  align->add_option("--html", settings->html, "write a page to look at: clouds, iterations, evidence (igsp report)")
       ->type_name("FILE");
   align->add_option("--initial", settings->initial, "start from this target_from_source, 4x4 text, instead of a search")
       ->type_name("FILE");

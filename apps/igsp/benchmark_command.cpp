@@ -261,7 +261,7 @@ void add_benchmark_command(CLI::App& app, Command& command) {
       ->add_option("--preset", settings->presets,
                    wrapped(fmt::format("options to run with: {}; may be given several times; default default",
                                        fmt::join(preset_names(), " or "))))
-      ->type_name("NAME")
+      ->type_name(fmt::format("{}", fmt::join(preset_names(), "|")))
       ->allow_extra_args(false);
   benchmark->add_option("--jobs", settings->jobs, "cases run at the same time; default 1")->type_name("INTEGER");
   benchmark

@@ -7,6 +7,7 @@
 #include "benchmark_csv.hpp"
 #include "benchmark_pair.hpp"
 #include "igsp/errors.hpp"
+#include "igsp/io.hpp"
 #include "interrupt.hpp"
 #include "io/number_text.hpp"
 #include "output_file.hpp"

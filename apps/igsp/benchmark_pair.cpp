@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "benchmark_judgement.hpp"
+#include "igsp/io.hpp"
 #include "interrupt.hpp"
 
 namespace igsp::cli {

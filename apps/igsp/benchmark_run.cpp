@@ -12,6 +12,7 @@
 #include "benchmark_pair.hpp"
 #include "igsp/align.hpp"
 #include "igsp/errors.hpp"
+#include "igsp/io.hpp"
 #include "interrupt.hpp"
 #include "report.hpp"
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cloud_file.hpp"
 #include "igsp/errors.hpp"
 #include "spatial/voxel_grid.hpp"
 
@@ -55,7 +56,7 @@ void check_extent(const CloudInput& cloud) {
 
 CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points, std::string_view stage,
                       const ProgressCallback& progress) {
-  PointReader reader(path);
+  CloudFile reader(path);
   CloudInput cloud;
   cloud.path = path;
   cloud.format = reader.format();
@@ -78,7 +79,7 @@ CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points,
 
 Points read_centroids(const CloudInput& cloud, double voxel_size, std::string_view stage,
                       const ProgressCallback& progress) {
-  PointReader reader(cloud.path);
+  CloudFile reader(cloud.path);
   const Eigen::Vector3d origin = centre_of(cloud.bounds);
   std::size_t read = 0;
   Points centroids = voxel_centroids(

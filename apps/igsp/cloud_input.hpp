@@ -2,9 +2,8 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <optional>
+#include <string>
 
-#include "igsp/io.hpp"
 #include "igsp/progress.hpp"
 #include "spatial/scale.hpp"
 
@@ -13,7 +12,7 @@ namespace igsp::cli {
 /// A cloud as it came from a file.
 struct CloudInput {
   std::filesystem::path path;
-  FileFormat format = FileFormat::ply_binary_little_endian;
+  std::string format;        ///< for people: "PLY, ascii"
   Points points;             ///< all of them, or every n-th if the file holds more than were asked for
   std::size_t total = 0;     ///< finite points in the file
   std::size_t dropped = 0;   ///< points left out for a coordinate that is not finite

@@ -107,18 +107,22 @@ int parse(CLI::App& app, int argc, char** argv) {
 
 }  // namespace
 
-int run(int argc, char** argv) {
+int run(int argc, char** argv, ForeignFormats formats) {
+  use_foreign_formats(std::move(formats));
   CLI::App app("igsp puts one point cloud onto another, without an initial guess", "igsp");
   app.set_version_flag("--version", fmt::format("igsp {}", version));
   app.footer(footer);
   app.get_formatter()->column_width(help_column);
   Command command;
   add_align_command(app, command);
+  add_report_command(app, command);
   add_evaluate_command(app, command);
   add_benchmark_command(app, command);
   add_simulate_command(app, command);
   add_info_command(app, command);
   add_options_command(app, command);
+  add_completion_command(app, command);
+  add_manual_command(app, command);
   if (argc < 2) {
     std::cerr << app.help();
     return exit_usage;

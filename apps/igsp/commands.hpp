@@ -10,10 +10,13 @@ using Command = std::function<int()>;
 
 // Each adds its subcommand to the command line; the subcommand stores what to run in `command`.
 void add_align_command(CLI::App& app, Command& command);
+void add_report_command(CLI::App& app, Command& command);
 void add_evaluate_command(CLI::App& app, Command& command);
 void add_benchmark_command(CLI::App& app, Command& command);
 void add_simulate_command(CLI::App& app, Command& command);
 void add_info_command(CLI::App& app, Command& command);
 void add_options_command(CLI::App& app, Command& command);
+void add_completion_command(CLI::App& app, Command& command);
+void add_manual_command(CLI::App& app, Command& command);
 
 }  // namespace igsp::cli

@@ -4,11 +4,12 @@
 #include <limits>
 #include <numbers>
 
-#include "cloud_input.hpp"
+#include "cloud_file.hpp"
 #include "commands.hpp"
 #include "exit_codes.hpp"
 #include "igsp/errors.hpp"
 #include "igsp/evaluation.hpp"
+#include "igsp/io.hpp"
 #include "interrupt.hpp"
 #include "report.hpp"
 
@@ -23,7 +24,7 @@ struct EvaluateSettings {
 };
 
 Eigen::Vector3d centroid_of(const fs::path& path) {
-  PointReader reader(path);
+  CloudFile reader(path);
   // Sums relative to the first point: survey coordinates lose nothing.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero(), sum = Eigen::Vector3d::Zero();
   std::size_t count = 0;

@@ -17,26 +17,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kept_points = 20'000'000;
 
-std::string_view name_of(FileFormat format) {
-  switch (format) {
-    case FileFormat::ply_ascii:
-      return "PLY, ascii";
-    case FileFormat::ply_binary_little_endian:
-      return "PLY, binary little endian";
-    case FileFormat::ply_binary_big_endian:
-      return "PLY, binary big endian";
-    case FileFormat::pcd_ascii:
-      return "PCD, ascii";
-    case FileFormat::pcd_binary:
-      return "PCD, binary";
-    case FileFormat::pcd_binary_compressed:
-      return "PCD, binary compressed";
-    case FileFormat::text:
-      return "text";
-  }
-  return "";
-}
-
 // Median distance to the nearest other point, over a sample.
 double spacing_of(PointView cloud, const Bounds& bounds, double voxel_size) {
   const Eigen::Vector3d origin = centre_of(bounds);
@@ -64,7 +44,7 @@ void print_info(const CloudInput& cloud) {
   const double voxel_size = choose_voxel_size(cloud.points, cloud.points, {});
   const double spacing = spacing_of(cloud.points, cloud.bounds, voxel_size);
   fmt::print("{}\n", cloud.path.string());
-  fmt::print("  format                {}\n", name_of(cloud.format));
+  fmt::print("  format                {}\n", cloud.format);
   fmt::print("  points                {}{}\n", cloud.total,
              cloud.dropped > 0 ? fmt::format(" and {} dropped, not finite", cloud.dropped) : "");
   fmt::print("  extent                {:.6g} x {:.6g} x {:.6g}\n", extent.x(), extent.y(), extent.z());

@@ -11,14 +11,18 @@
 namespace igsp::cli {
 namespace {
 
+// What may be typed is spelt out where it is a choice; completion reads it from here.
 std::string type_name(const Option& option) {
+  if (option.range.shape == Range::Shape::ends_only) {
+    return fmt::format("{}|{}", option.range.low, option.range.high);
+  }
   switch (option.kind) {
     case OptionKind::integer:
       return "INTEGER";
     case OptionKind::real:
       return "NUMBER";
     case OptionKind::choice:
-      return "NAME";
+      return fmt::format("{}", fmt::join(option.choices, "|"));
     case OptionKind::boolean:
       break;
   }
@@ -36,8 +40,14 @@ void add_flag(CLI::App& command, const Option& option, std::optional<std::string
   const std::string group = option.section.empty() ? "Method" : "Method, " + std::string(option.section);
   if (option.kind == OptionKind::boolean) {
     const std::string name(option.flag.substr(2));
-    command.add_flag_callback("--" + name, [store] { store("true"); }, description(option))->group(group);
-    command.add_flag_callback("--no-" + name, [store] { store("false"); }, "the opposite")->group(group);
+    command
+        .add_flag_callback(
+            "--" + name, [store] { store("true"); }, description(option))
+        ->group(group);
+    command
+        .add_flag_callback(
+            "--no-" + name, [store] { store("false"); }, "the opposite")
+        ->group(group);
   } else {
     command.add_option_function<std::string>(std::string(option.flag), store, description(option))
         ->type_name(type_name(option))
@@ -52,10 +62,11 @@ std::shared_ptr<OptionFlags> add_option_flags(CLI::App& command) {
   command
       .add_option("--preset", flags->preset,
                   fmt::format("where the options start: {}", fmt::join(preset_names(), " or ")))
-      ->type_name("NAME");
-  command.add_option("--config", flags->config,
-                     wrapped("options from a TOML file, as `igsp options` prints it; what it leaves out comes from the "
-                             "preset that its key `preset` names; flags override it"))
+      ->type_name(fmt::format("{}", fmt::join(preset_names(), "|")));
+  command
+      .add_option("--config", flags->config,
+                  wrapped("options from a TOML file, as `igsp options` prints it; what it leaves out comes from the "
+                          "preset that its key `preset` names; flags override it"))
       ->type_name("FILE");
   flags->texts.resize(option_list().size());
   for (std::size_t i = 0; i < flags->texts.size(); ++i) add_flag(command, option_list()[i], flags->texts[i]);

@@ -1,16 +1,38 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "config/option_list.hpp"
 #include "config/toml_file.hpp"
 #include "exit_codes.hpp"
 #include "igsp/version.hpp"
 #include "option_flags.hpp"
+#include "report.hpp"
 
 namespace igsp::cli {
 namespace {
 
-int run_options(const OptionFlags& flags) {
-  fmt::print("# Options of igsp {}\n{}", version, options_to_toml(resolve(flags)));
+// For whoever makes a form or a page of the options: the list itself, a record per option.
+Json list_of(const Options& options) {
+  Json list = Json::array();
+  for (const Option& option : option_list()) {
+    const Json value = std::visit([](const auto& alternative) { return Json(alternative); }, option.get(options));
+    list.push_back({{"key", option.key},
+                    {"flag", option.flag},
+                    {"value", value},
+                    {"unit", option.unit},
+                    {"admissible", option.kind == OptionKind::boolean ? "true or false" : admissible_values(option)},
+                    {"help", option.help}});
+  }
+  return list;
+}
+
+int run_options(const OptionFlags& flags, bool json) {
+  const Options options = resolve(flags);
+  if (json) {
+    fmt::print("{}\n", list_of(options).dump(2));
+  } else {
+    fmt::print("# Options of igsp {}\n{}", version, options_to_toml(options));
+  }
   return exit_registered;
 }
 
@@ -23,9 +45,11 @@ constexpr const char* examples =
 
 void add_options_command(CLI::App& app, Command& command) {
   CLI::App* options = app.add_subcommand("options", "print all options with their help and range, as a TOML file");
+  const auto json = std::make_shared<bool>(false);
+  options->add_flag("--json", *json, "as JSON, with flag, unit and range of every option");
   const auto flags = add_option_flags(*options);
   options->footer(examples);
-  options->callback([flags, &command] { command = [flags] { return run_options(*flags); }; });
+  options->callback([=, &command] { command = [=] { return run_options(*flags, *json); }; });
 }
 
 }  // namespace igsp::cli

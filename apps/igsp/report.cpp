@@ -2,6 +2,8 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
+
 #include "config/option_list.hpp"
 #include "igsp/version.hpp"
 
@@ -17,6 +19,18 @@ Json to_json(const CloudInput& input, const CloudSummary& summary) {
           {"streamed", !input.whole()},    {"voxels", summary.voxels},     {"keypoints", summary.keypoints}};
 }
 
+Json to_json(const std::vector<KeypointMatch>& matches) {
+  Json pairs = Json::array();
+  for (const KeypointMatch& match : matches) pairs.push_back({match.source, match.target});
+  return pairs;
+}
+
+Json to_json(PointView points) {
+  Json rows = Json::array();
+  for (const Eigen::Vector3d& point : points) rows.push_back({point.x(), point.y(), point.z()});
+  return rows;
+}
+
 Json to_json(const IterationRecord& record) {
   return {{"k", record.k},
           {"w_fd", record.w_fd},
@@ -28,7 +42,8 @@ Json to_json(const IterationRecord& record) {
           {"rotation_step_rad", record.rotation_step_rad},
           {"translation_step", record.translation_step},
           {"seconds", record.seconds},
-          {"target_from_source", cli::to_json(record.target_from_source)}};
+          {"target_from_source", cli::to_json(record.target_from_source)},
+          {"correspondences", to_json(record.correspondences)}};
 }
 
 Json rows(const auto& matrix) {
@@ -65,7 +80,38 @@ Json to_json(const Precision& precision) {
           {"free_directions", free_directions}};
 }
 
+bool holds_an_object(const Json& json) {
+  return json.is_object() || (json.is_array() && std::ranges::any_of(json, holds_an_object));
+}
+
+void append(std::string& text, const Json& json, const std::string& line_end) {
+  // A path need not be UTF-8, which JSON asks for.
+  const auto one_line = [](const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); };
+  if (json.empty() || !holds_an_object(json)) {
+    text += one_line(json);
+    return;
+  }
+  const std::string inner = line_end + "  ";
+  std::string_view separator = "";
+  text += json.is_object() ? '{' : '[';
+  for (const auto& [key, value] : json.items()) {
+    text += separator;
+    text += inner;
+    if (json.is_object()) text += one_line(key) + ": ";
+    append(text, value, inner);
+    separator = ",";
+  }
+  text += line_end;
+  text += json.is_object() ? '}' : ']';
+}
+
 }  // namespace
+
+std::string report_text(const Json& report) {
+  std::string text;
+  append(text, report, "\n");
+  return text + "\n";
+}
 
 Json to_json(const Transformation& transformation) { return rows(transformation.matrix()); }
 
@@ -98,6 +144,8 @@ Json align_report(const Result& result, const CloudInput& source, const CloudInp
   json["source"] = to_json(source, result.source);
   json["target"] = to_json(target, result.target);
   json["keypoints"] = {{"source", result.source.keypoints}, {"target", result.target.keypoints}};
+  json["source_keypoints"] = to_json(PointView(result.source_keypoints));
+  json["target_keypoints"] = to_json(PointView(result.target_keypoints));
   json["iterations"] = Json::array();
   for (const IterationRecord& record : result.iterations) json["iterations"].push_back(to_json(record));
   json["timings_s"] = Json::object();

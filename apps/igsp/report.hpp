@@ -18,8 +18,12 @@ Json to_json(const Transformation& transformation);
 Json to_json(const Options& options);
 
 /// What `igsp align --report` writes. `cpu_seconds`: of the registration, without reading, all threads.
+/// To be written with report_text.
 Json align_report(const Result& result, const CloudInput& source, const CloudInput& target,
                   double cpu_seconds, const std::vector<std::string>& warnings);
+
+/// Indented, but an array of numbers, of any depth, stays on one line: keypoints and correspondences are many.
+std::string report_text(const Json& report);
 
 std::size_t peak_memory_bytes();
 

@@ -60,7 +60,7 @@ void add_simulate_command(CLI::App& app, Command& command) {
   CLI::App* simulate = app.add_subcommand("simulate", "scans of a made-up scene with their true relation");
   const auto settings = std::make_shared<SimulateSettings>();
   SimulationOptions& options = settings->options;
-  simulate->add_option("SCENE", settings->scene, "park, indoor or object")->required()->type_name("");
+  simulate->add_option("SCENE", settings->scene, "what is scanned")->required()->type_name("park|indoor|object");
   simulate->add_option("--out", settings->folder, "folder for the files, made if missing")
       ->required()
       ->type_name("DIR");

@@ -198,15 +198,16 @@ class Tallies(unittest.TestCase):
         tally = tallies(self.rows)["open3d_fgr"]
         self.assertEqual((len(tally.pairs), len(tally.known), len(tally.right), len(tally.said)), (5, 4, 2, 1))
         self.assertEqual((len(tally.false_accepts), len(tally.failures)), (2, 1))
-        self.assertEqual((tally.per_pair(all), tally.per_pair(any)), (1, 2))  # b; a and b
+        self.assertEqual((tally.solved(all), tally.solved(any)), ({"b"}, {"a", "b"}))
+        self.assertEqual((tally.in_a_pass(tally.right), tally.known_pairs), (1.5, 3))  # a in one of two runs
         self.assertEqual(tally.median("e_r_deg", right_only=True), 2)
         self.assertEqual(tally.ratio("cpu_seconds", "igsp_cpu_seconds"), 4)  # of 2 and 6
-        self.assertEqual(tally.right_without_false_accept(), 1)  # 9 is above 7, 5 is not
+        self.assertEqual([row["score"] for row in tally.right_without_false_accept()], ["9"])  # above 7; 5 is not
         self.assertEqual(list(tallies(self.rows)), ["igsp", "igsp_refine", "open3d_fgr"])
 
     def test_the_page(self):
         text = document(self.rows, not_run(self.rows, Programs(IGSP, root / "nowhere", root / "nowhere")))
-        self.assertIn("| Open3D FGR | 5 | 2 of 4 | 1 / 2 | 2 of 2 | 1 of 4 | 2 (1 of 2) | 1 |", text)
+        self.assertIn("| Open3D FGR | 6 on 5 | 1.5 of 3 | 1 / 2 | 2 of 2 | 0 / 0 | 0.5 | 1.5 (1 of 2) | 1 |", text)
         self.assertIn("| b | right but refused | who knows | Open3D FGR |", text)
         self.assertIn("**Not run:** PCL NDT: nowhere: No such file or directory.", text)
         self.assertIn("- e, Open3D FGR (igsp voxels, 1 threads, seed -): stopped after 1 s of CPU", text)

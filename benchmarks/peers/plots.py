@@ -17,8 +17,8 @@ ROOT = Path(__file__).resolve().parents[2]
 MARKERS = {"igsp": "*", "igsp_paper": "P", "open3d_ransac_100k": "o", "open3d_ransac_4m": "s", "open3d_fgr": "^",
            "kiss_matcher": "D", "pcl_geometric_consistency": "v", "pcl_kfpcs": "X", "pcl_icp": "<", "pcl_ndt": ">",
            "pcl_prerejective": "h"}
-PARTS = [("right, said so", "0.25", ""), ("right, but refused", "0.8", "...."), ("wrong, refused", "white", ""),
-         ("wrong, yet called registered", "white", "xxxx")]
+PARTS = [("right, said so", "0.25", ""), ("right, but refused", "0.8", "...."),
+         ("wrong or no overlap, refused", "white", ""), ("wrong, yet called registered", "white", "xxxx")]
 
 
 def save(figure: plt.Figure, path: Path) -> None:
@@ -26,6 +26,11 @@ def save(figure: plt.Figure, path: Path) -> None:
     figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
     figure.savefig(path.with_suffix(".png"), dpi=110)
     plt.close(figure)
+
+
+def recall(tally: Tally) -> float:
+    """Percent of the pairs that are right, on average over the runs."""
+    return 100 * tally.in_a_pass(tally.right) / tally.known_pairs
 
 
 def draw_recall(found: dict[str, Tally], path: Path) -> None:
@@ -37,19 +42,19 @@ def draw_recall(found: dict[str, Tally], path: Path) -> None:
         method, _, label = preset.partition("+")
         if not tally.known or method not in MARKERS:
             continue
-        place = tally.median("cpu_seconds"), 100 * len(tally.right) / len(tally.known)
+        place = tally.median("cpu_seconds"), recall(tally)
         final = preset + "+icp" not in found
         colour = "black" if len(tally.pairs) > 0.7 * largest else "0.6"
         axes.plot(*place, MARKERS[method], color=colour, markerfacecolor=colour if final else "white",
                   markersize=12 if method == "igsp" else 7, label=title_of(method) if final else None, linestyle="none")
         if label:
             alone = found[method]
-            axes.plot([alone.median("cpu_seconds"), place[0]],
-                      [100 * len(alone.right) / len(alone.known), place[1]], color="0.6", linewidth=0.8, zorder=0)
+            axes.plot([alone.median("cpu_seconds"), place[0]], [recall(alone), place[1]], color="0.6", linewidth=0.8,
+                      zorder=0)
     axes.set_xscale("log")
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.set_xlabel("CPU seconds of a registration, median, one thread")
-    axes.set_ylabel("runs that are right [%]")
+    axes.set_ylabel("pairs that are right [%]")
     axes.set_ylim(-4, 104)
     axes.grid(alpha=0.3, which="both")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False,
@@ -58,22 +63,23 @@ def draw_recall(found: dict[str, Tally], path: Path) -> None:
 
 
 def draw_verdicts(found: dict[str, Tally], path: Path) -> None:
-    """All runs of a method, those on pairs without overlap among them: there, refusing is what is right."""
+    """All pairs, those without overlap among them: there, refusing is what is right."""
     shown = [tally for preset, tally in found.items() if preset.split("+")[0] in MARKERS]
     figure, axes = plt.subplots(figsize=(7.2, 0.32 * len(shown) + 1.4))
+    largest = max(len(tally.pairs) for tally in shown)
+    titles = [title_of(tally.preset) + (f", {len(tally.pairs)} pairs" if len(tally.pairs) < 0.7 * largest else "")
+              for tally in reversed(shown)]
     for place, tally in enumerate(reversed(shown)):
-        answered = [row for row in tally.rows if row["verdict"]]
-        refused_right = len(tally.right) - len(tally.said)
-        counts = [len(tally.said), refused_right,
-                  len(answered) - len(tally.right) - len(tally.false_accepts), len(tally.false_accepts)]
+        said, right, false = (tally.in_a_pass(rows) for rows in (tally.said, tally.right, tally.false_accepts))
+        counts = [said, right - said, len(tally.pairs) - right - false, false]
         left = 0.0
         for count, (label, colour, hatch) in zip(counts, PARTS, strict=True):
-            share = 100 * count / max(len(answered), 1)
+            share = 100 * count / len(tally.pairs)
             axes.barh(place, share, left=left, color=colour, hatch=hatch, edgecolor="black", linewidth=0.6, height=0.7,
                       label=label if place == 0 else None)
             left += share
-    axes.set_yticks(range(len(shown)), [title_of(tally.preset) for tally in reversed(shown)])
-    axes.set_xlabel("share of the runs [%]")
+    axes.set_yticks(range(len(shown)), titles)
+    axes.set_xlabel(f"share of the pairs, {largest} unless said [%]")
     axes.set_xlim(0, 100)
     axes.legend(loc="lower center", bbox_to_anchor=(0.4, 1.0), ncols=2, frameon=False)
     save(figure, path)

@@ -31,8 +31,12 @@ def millimetres(value: float | None) -> str:
     return "-" if value is None else shown(1000 * value) + " mm"
 
 
-def of(part: int, whole: int) -> str:
+def of(part: int | str, whole: int) -> str:
     return f"{part} of {whole}" if whole else "-"
+
+
+def in_a_pass(tally: Tally, rows: list[Row]) -> str:
+    return f"{tally.in_a_pass(rows):.1f}".removesuffix(".0")
 
 
 def overview(all_tallies: dict[str, Tally], igsp: Tally) -> str:
@@ -40,13 +44,16 @@ def overview(all_tallies: dict[str, Tally], igsp: Tally) -> str:
     for preset, tally in all_tallies.items():
         ours = igsp.only(lambda row: row["name"] in tally.pairs)  # noqa: B023 - used at once
         negative = tally.only(lambda row: row["truth"] == "none")
-        lines.append([title_of(preset), str(len(tally.pairs)), of(len(tally.right), len(tally.known)),
-                      f"{tally.per_pair(all)} / {tally.per_pair(any)}", of(len(ours.right), len(ours.known)),
-                      of(len(tally.said), len(tally.known)),
-                      f"{len(tally.false_accepts)} ({of(len(negative.false_accepts), len(negative.rows))})",
-                      str(len(tally.failures))])
-    return table(["method", "pairs", "runs right", "pairs right always / ever", "igsp on the same pairs",
-                  "right and said", "false accepts (of them without overlap)", "no answer"], lines)
+        lines.append([title_of(preset), f"{len(tally.rows)} on {len(tally.pairs)}",
+                      of(in_a_pass(tally, tally.right), tally.known_pairs),
+                      f"{len(tally.solved(all))} / {len(tally.solved(any))}",
+                      of(in_a_pass(ours, ours.right), ours.known_pairs),
+                      f"{len(ours.solved(all) - tally.solved(any))} / {len(tally.solved(any) - ours.solved(all))}",
+                      in_a_pass(tally, tally.said),
+                      f"{in_a_pass(tally, tally.false_accepts)} ({in_a_pass(negative, negative.false_accepts)} of "
+                      f"{len(negative.pairs)})", str(len(tally.failures))])
+    return table(["method", "runs on pairs", "right", "always / ever right", "igsp right, same pairs",
+                  "only igsp right / only it", "right and said", "false accepts (without overlap)", "no answer"], lines)
 
 
 def costs(all_tallies: dict[str, Tally]) -> str:
@@ -69,9 +76,9 @@ def by_group(all_tallies: dict[str, Tally], groups: list[str]) -> str:
         cells = []
         for group in groups:
             part = tally.only(lambda row: row["group"] == group)  # noqa: B023 - used at once
-            cells.append(of(len(part.right), len(part.known)))
+            cells.append(of(in_a_pass(part, part.right), part.known_pairs))
         lines.append([title_of(preset), *cells])
-    return table(["runs right", *groups], lines)
+    return table(["right", *groups], lines)
 
 
 def errors_by_group(all_tallies: dict[str, Tally], groups: list[str]) -> str:
@@ -91,8 +98,8 @@ def hindsight(all_tallies: dict[str, Tally]) -> str:
     for preset, tally in all_tallies.items():
         best = tally.right_without_false_accept()
         if best is not None:
-            lines.append([title_of(preset), of(len(tally.said), len(tally.known)), str(len(tally.false_accepts)),
-                          of(best, len(tally.known))])
+            lines.append([title_of(preset), of(in_a_pass(tally, tally.said), tally.known_pairs),
+                          in_a_pass(tally, tally.false_accepts), of(in_a_pass(tally, best), tally.known_pairs)])
     return table(["method", "right and said", "false accepts", "right above the best wrong score"], lines)
 
 
@@ -102,14 +109,17 @@ def compared(first: dict[str, Tally], second: dict[str, Tally], names: tuple[str
     for preset in second:
         if preset not in first:
             continue
-        pairs = first[preset].pairs & second[preset].pairs
-        one, other = (side[preset].only(lambda row: row["name"] in pairs) for side in (first, second))  # noqa: B023
-        lines.append([title_of(preset), str(len(pairs)), *(of(len(t.right), len(t.known)) for t in (one, other)),
-                      *(millimetres(t.median("centroid_displacement", True)) for t in (one, other)),
-                      *(shown(t.median("cpu_seconds")) + " s" for t in (one, other)),
-                      *(shown(t.median("wall_seconds")) + " s" for t in (one, other))])
-    heads = ["runs right", "displacement", "CPU", "wall"]
-    return table(["method", "pairs", *(f"{head}: {name}" for head in heads for name in names)], lines)
+        both = {(row["name"], row["seed"]) for row in first[preset].rows}
+        both &= {(row["name"], row["seed"]) for row in second[preset].rows}
+        sides = [side[preset].only(lambda row: (row["name"], row["seed"]) in both)  # noqa: B023 - used at once
+                 for side in (first, second)]
+        lines.append([title_of(preset), *(of(in_a_pass(t, t.right), t.known_pairs) for t in sides),
+                      *(millimetres(t.median("centroid_displacement", True)) for t in sides),
+                      *(shown(t.median("cpu_seconds")) + " s" for t in sides),
+                      *(shown(t.median("wall_seconds")) + " s" for t in sides),
+                      *(shown(t.ratio("wall_seconds", "igsp_wall_seconds")) for t in sides)])
+    heads = ["right", "displacement", "CPU", "wall", "wall / igsp's"]
+    return table(["method", *(f"{head}: {name}" for head in heads for name in names)], lines)
 
 
 def unsolved(all_tallies: dict[str, Tally]) -> str:

@@ -1,5 +1,6 @@
 """Counts and medians over the rows: what the tables and the plots show."""
 
+from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -63,12 +64,21 @@ class Tally:
     def pairs(self) -> set[str]:
         return {row["name"] for row in self.rows}
 
-    def per_pair(self, of: Callable[[Iterable[bool]], bool]) -> int:
+    @property
+    def known_pairs(self) -> int:
+        return len({row["name"] for row in self.known})
+
+    def in_a_pass(self, rows: list[Row]) -> float:
+        """How many of these rows a single run on every pair would have, on average."""
+        runs = Counter(row["name"] for row in self.rows)
+        return sum(1 / runs[row["name"]] for row in rows)
+
+    def solved(self, of: Callable[[Iterable[bool]], bool]) -> set[str]:
         """Pairs that are right in all (of=all) or any (of=any) of their runs."""
         runs: dict[str, list[bool]] = {}
         for row in self.known:
             runs.setdefault(row["name"], []).append(row["success"] == "yes")
-        return sum(of(answers) for answers in runs.values())
+        return {name for name, answers in runs.items() if of(answers)}
 
     def median(self, column: str, right_only: bool = False) -> float | None:
         return median_of(number(row, column) for row in (self.right if right_only else self.rows))
@@ -81,7 +91,7 @@ class Tally:
     def only(self, keep: Callable[[Row], bool]) -> "Tally":
         return Tally(self.preset, [row for row in self.rows if keep(row)])
 
-    def right_without_false_accept(self) -> int | None:
+    def right_without_false_accept(self) -> list[Row] | None:
         """Right answers above the highest score of a wrong one: the best that any threshold on the score could do.
         Nothing where the score is a length or belongs to another answer."""
         if self.preset.startswith("pcl_") and self.preset not in PCL_SCORES:
@@ -91,7 +101,8 @@ class Tally:
         # On a pair that does not overlap every estimate is wrong, whatever was said about it.
         wrong = [score for row, score in scored if row["truth"] == NEGATIVE or row["success"] == "no"]
         best_wrong = max(wrong, default=-float("inf"))
-        return sum(score > best_wrong for row, score in scored if row["truth"] == "known" and row["success"] == "yes")
+        return [row for row, score in scored
+                if row["truth"] == "known" and row["success"] == "yes" and score > best_wrong]
 
 
 def tallies(rows: list[Row], voxels: str = "igsp", threads: str = "1") -> dict[str, Tally]:

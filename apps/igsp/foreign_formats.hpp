@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "igsp/point_cloud.hpp"
+
+namespace igsp::cli {
+
+/// A cloud being read by somebody else.
+struct ForeignCloud {
+  std::string format;  ///< what people call it, such as "LAZ"
+  ChunkSource next_chunk;
+  std::function<std::size_t()> dropped;  ///< non-finite points met so far
+};
+
+/// Files that igsp cannot read or write by itself, and who can: the Python package fills this, the plain command has
+/// none of it. All may throw FileError.
+struct ForeignFormats {
+  std::function<bool(const std::filesystem::path&)> reads;
+  std::function<ForeignCloud(const std::filesystem::path&)> open;
+  /// Whether `source` can be written moved as `output`, with all that belongs to its points.
+  std::function<bool(const std::filesystem::path& source, const std::filesystem::path& output)> moves;
+  std::function<void(const std::filesystem::path& source, const std::filesystem::path& output, const Transformation&)>
+      write_moved;
+};
+
+/// Those of this process: it runs one command line. Set before any command runs, not changed later.
+void use_foreign_formats(ForeignFormats formats);
+
+/// Not one of igsp's own formats, but one of theirs.
+bool reads_foreign(const std::filesystem::path& path);
+bool moves_foreign(const std::filesystem::path& source, const std::filesystem::path& output);
+ForeignCloud open_foreign(const std::filesystem::path& path);
+void write_moved_foreign(const std::filesystem::path& source, const std::filesystem::path& output,
+                         const Transformation& target_from_source);
+
+/// Throws FileError that says where help is, if `path` is of a format that only the Python package reads and writes and
+/// nobody here does.
+void check_not_foreign(const std::filesystem::path& path);
+
+}  // namespace igsp::cli

@@ -1,0 +1,55 @@
+"""igsp puts one 3D point cloud onto another, without an initial guess, and says whether to believe the answer.
+
+>>> import igsp
+>>> result = igsp.align("source.ply", "target.ply")
+>>> print(result)
+>>> result.target_from_source  # p_target = target_from_source * p_source
+"""
+
+from igsp._core import (
+    CloudSummary,
+    Evidence,
+    Features,
+    FreeDirection,
+    IterationRecord,
+    MatchQuality,
+    PoseError,
+    Precision,
+    Result,
+    RunnerUp,
+    SimulatedScan,
+    simulate,
+)
+from igsp._core import version as __version__
+from igsp.errors import Cancelled, NotRegistered
+from igsp.evaluation import match_quality, pose_error, transform_points
+from igsp.files import read_points, read_transformation, write_points, write_transformation
+from igsp.registration import align, extract_features, options
+
+__all__ = [
+    "Cancelled",
+    "CloudSummary",
+    "Evidence",
+    "Features",
+    "FreeDirection",
+    "IterationRecord",
+    "MatchQuality",
+    "NotRegistered",
+    "PoseError",
+    "Precision",
+    "Result",
+    "RunnerUp",
+    "SimulatedScan",
+    "__version__",
+    "align",
+    "extract_features",
+    "match_quality",
+    "options",
+    "pose_error",
+    "read_points",
+    "read_transformation",
+    "simulate",
+    "transform_points",
+    "write_points",
+    "write_transformation",
+]

@@ -1,0 +1,17 @@
+"""What goes wrong: ValueError for a caller's mistake, OSError for a file, and the two below."""
+
+from __future__ import annotations
+
+from igsp._core import Cancelled, Result
+
+__all__ = ["Cancelled", "NotRegistered"]
+
+
+class NotRegistered(RuntimeError):
+    """`Result.raise_if_not_registered` was called on a pair that could not be registered."""
+
+    result: Result
+
+    def __init__(self, result: Result) -> None:
+        super().__init__(result.reason)
+        self.result = result

@@ -1,0 +1,53 @@
+"""Clouds and transformations in files."""
+
+from __future__ import annotations
+
+import os
+import warnings
+
+import numpy.typing as npt
+
+from igsp import _core
+from igsp.arrays import Matrix, Points, matrix_array, points_array
+
+Path = str | os.PathLike[str]
+
+
+def read_points(path: Path) -> Points:
+    """The (N, 3) float64 points of a file: PLY, PCD, text (XYZ, TXT, CSV, PTS), LAS, LAZ, E57 or PTX.
+
+    Points with a coordinate that is not finite are left out, with a warning. OSError names path and line or byte,
+    ImportError the optional package that the format needs. More of a survey format's content: `igsp.formats`.
+    """
+    from igsp import formats  # not before it is needed
+
+    name = os.fspath(path)
+    if formats.is_supported(name) and not name.lower().endswith(".pts"):
+        cloud = formats.read_cloud(name)
+        points, dropped = cloud.points, cloud.dropped
+    else:
+        points, dropped = _core.read_points(name)
+    if dropped:
+        warnings.warn(
+            f"{name}: dropped {dropped} of {dropped + len(points)} points with a coordinate that is not finite",
+            stacklevel=2,
+        )
+    return points
+
+
+def write_points(path: Path, points: object, *, single_precision: bool = False) -> None:
+    """Writes a cloud (see `align` for what may be one) to .ply, .pcd, .xyz, .txt, .csv or .pts; whole or not at all.
+
+    Reads back as exactly the same coordinates, or as those rounded to float with `single_precision`.
+    """
+    _core.write_points(os.fspath(path), points_array(points, "points"), single_precision)
+
+
+def read_transformation(path: Path) -> Matrix:
+    """The (4, 4) float64 transformation of a text file of 16 numbers, row by row, or the 12 of the upper three rows."""
+    return _core.read_transformation(os.fspath(path))
+
+
+def write_transformation(path: Path, transformation: npt.ArrayLike) -> None:
+    """Writes a (4, 4) transformation as text that reads back as the same numbers."""
+    _core.write_transformation(os.fspath(path), matrix_array(transformation, "transformation"))

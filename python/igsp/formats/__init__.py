@@ -1,0 +1,160 @@
+"""Survey formats: LAS, LAZ, COPC, E57, PTX and PTS, read as points and written moved with all that belongs to them.
+
+LAS, LAZ and COPC need `pip install 'igsp[las]'`, E57 needs `pip install 'igsp[e57]'`; PTX and PTS need nothing.
+What each format keeps and how its poses, scales and coordinate systems are treated: docs/formats.md.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _e57_reader, _e57_writer, _las_reader, _las_writer, _motion, _pts, _ptx
+from ._cloud import Cloud, FormatError, Metadata, MissingPackageError, PathLike, Points, Scan, Selection
+
+__all__ = [
+    "ChunkReader",
+    "Cloud",
+    "FormatError",
+    "Metadata",
+    "MissingPackageError",
+    "Scan",
+    "is_supported",
+    "read_chunks",
+    "read_cloud",
+    "read_metadata",
+    "write_aligned",
+]
+
+POINTS_PER_CHUNK = 1_000_000
+
+_READERS: dict[str, ModuleType] = {
+    ".las": _las_reader,
+    ".laz": _las_reader,
+    ".e57": _e57_reader,
+    ".ptx": _ptx,
+    ".pts": _pts,
+}
+_WRITERS: dict[str, ModuleType] = {
+    ".las": _las_writer,
+    ".laz": _las_writer,
+    ".e57": _e57_writer,
+    ".ptx": _ptx,
+    ".pts": _pts,
+}
+
+
+def is_supported(path: PathLike) -> bool:
+    """True if the name of the file ends like one of a survey format, in capital letters or not."""
+    return _extension(path) in _READERS
+
+
+class ChunkReader(Iterator[Points]):
+    """The finite points of a file, chunk by chunk, with memory bounded by a chunk. `metadata` fills as it reads."""
+
+    def __init__(self, path: PathLike, points_per_chunk: int, selection: Selection) -> None:
+        if points_per_chunk < 1:
+            raise ValueError(f"points_per_chunk must be at least 1, got {points_per_chunk}")
+        self.metadata = Metadata(_known_extension(path)[1:])
+        self.dropped = 0
+        """Points met so far that were left out because a coordinate is not finite."""
+        reader = _READERS[_known_extension(path)]
+        self._chunks: Iterator[Points] = reader.read(path, selection, self.metadata, points_per_chunk)
+
+    def __next__(self) -> Points:
+        for points in self._chunks:
+            finite = np.isfinite(points).all(axis=1)
+            if not finite.all():
+                self.dropped += int(len(points) - np.count_nonzero(finite))
+                points = points[finite]
+            if len(points):
+                return points
+        raise StopIteration
+
+
+def read_chunks(
+    path: PathLike, points_per_chunk: int = POINTS_PER_CHUNK, *, scan: int | None = None, apply_pose: bool = True
+) -> ChunkReader:
+    """Iterates over the points in arrays of at most `points_per_chunk` rows, (N, 3) float64; see `read_cloud`."""
+    return ChunkReader(path, points_per_chunk, Selection(scan, apply_pose))
+
+
+def read_cloud(path: PathLike, *, scan: int | None = None, apply_pose: bool = True) -> Cloud:
+    """Reads the points of a file.
+
+    Args:
+        path: its extension says which format: .las, .laz (also COPC), .e57, .ptx or .pts.
+        scan: index of the scan to read, from 0; all of them by default. LAS and PTS files are one scan.
+        apply_pose: whether the points of every scan are brought to the file's frame by its pose (E57, PTX);
+            otherwise they stay in the frame of their scanner.
+
+    Raises:
+        FormatError: an OSError; names the path, what is wrong and at which line or byte.
+        MissingPackageError: an ImportError; names the package to install.
+        ValueError: the file has no such scan.
+    """
+    reader = read_chunks(path, scan=scan, apply_pose=apply_pose)
+    points = np.empty((0, 3))
+    count = 0
+    for chunk in reader:
+        if count + len(chunk) > len(points):  # grown in place where the system can, so that there is one copy
+            points.resize((max(count + len(chunk), 2 * count), 3), refcheck=False)
+        points[count : count + len(chunk)] = chunk
+        count += len(chunk)
+    points.resize((count, 3), refcheck=False)
+    return Cloud(points, reader.metadata.format, reader.dropped, reader.metadata)
+
+
+def read_metadata(path: PathLike) -> Metadata:
+    """What a file says beside its points: its scans and poses, scale, offset and coordinate reference system."""
+    extension = _known_extension(path)
+    metadata = Metadata(extension[1:])
+    _READERS[extension].read_metadata(path, metadata)
+    return metadata
+
+
+def write_aligned(
+    source_path: PathLike,
+    output_path: PathLike,
+    target_from_source: ArrayLike,
+    *,
+    scan: int | None = None,
+    apply_pose: bool = True,
+) -> None:
+    """Writes the source moved into the target's frame: its format, all its points, all their attributes.
+
+    Args:
+        source_path: the file that was registered.
+        output_path: must be of the same format, where LAS and LAZ count as one. The file appears complete or not at
+            all, and may be the source itself.
+        target_from_source: (4, 4), rigid; p_target = target_from_source @ p_source, where p_source is a point as
+            `read_cloud` gives it with the same `scan` and `apply_pose`.
+        scan: the one that moves, the others stay where they are; by default all move.
+        apply_pose: whether target_from_source is for points in the file's frame or in that of their scanner, as in
+            `read_cloud`; in the latter case it becomes the pose.
+
+    Raises:
+        FormatError, MissingPackageError: as `read_cloud`; a source that is cut short or damaged is not copied.
+        ValueError: target_from_source is not a rigid motion, or the file has no such scan.
+    """
+    motion = _motion.as_rigid(target_from_source, "target_from_source")
+    writer = _WRITERS[_known_extension(source_path)]
+    if _WRITERS.get(_extension(output_path)) is not writer:
+        known = " or ".join(extension for extension, module in _WRITERS.items() if module is writer)
+        raise FormatError(output_path, f"the source is written in its own format: the name must end in {known}")
+    writer.write_aligned(source_path, output_path, motion, Selection(scan, apply_pose))
+
+
+def _extension(path: PathLike) -> str:
+    return os.path.splitext(os.fspath(path))[1].lower()
+
+
+def _known_extension(path: PathLike) -> str:
+    extension = _extension(path)
+    if extension not in _READERS:
+        raise FormatError(path, f"not a survey format: the name must end in one of {', '.join(_READERS)}")
+    return extension

@@ -1,0 +1,60 @@
+"""The points of LAS and LAZ files (COPC is LAZ), through laspy and lazrs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from . import _las_layout
+from ._cloud import FormatError, Metadata, PathLike, Points, Scan, Selection, require
+from ._las_layout import Layout
+
+
+def describe(path: PathLike, layout: Layout, metadata: Metadata) -> None:
+    metadata.format = "copc" if layout.is_copc else "laz" if layout.compressed else "las"
+    metadata.scale, metadata.offset = layout.scale, layout.offset
+    metadata.crs_wkt, metadata.epsg = _las_layout.read_crs(path, layout)
+    metadata.scans = [Scan("scan 0", layout.point_count, None)]
+
+
+def read_metadata(path: PathLike, metadata: Metadata) -> None:
+    describe(path, _las_layout.read_layout(path), metadata)
+
+
+def read(path: PathLike, selection: Selection, metadata: Metadata, points_per_chunk: int) -> Iterator[Points]:
+    layout = _las_layout.read_layout(path)
+    describe(path, layout, metadata)
+    selection.require_scan(path, 1)
+    for records in read_records(path, layout, points_per_chunk, coordinates_only=True):
+        stored = np.column_stack([records["X"], records["Y"], records["Z"]])
+        yield stored * layout.scale + layout.offset
+
+
+def read_records(
+    path: PathLike, layout: Layout, points_per_chunk: int, coordinates_only: bool = False
+) -> Iterator[Any]:
+    """Structured arrays of point records, as stored. Throws FormatError if there are fewer than declared."""
+    laspy = require("laspy", path, "las")
+    if layout.compressed:
+        require("lazrs", path, "las")
+    fields = laspy.DecompressionSelection.all()
+    if coordinates_only:  # spares LAZ of point formats 6 to 10 the decompression of the rest
+        fields = laspy.DecompressionSelection.base().decompress_z()
+    total = 0
+    try:
+        with laspy.open(
+            path, laz_backend=laspy.LazBackend.LazrsParallel, read_evlrs=False, decompression_selection=fields
+        ) as reader:
+            while total < layout.point_count:
+                records = reader.read_points(points_per_chunk).array
+                if not len(records):
+                    break
+                total += len(records)
+                yield records
+    except (laspy.LaspyException, RuntimeError, ValueError, OverflowError) as error:
+        fault = f"after point {total} of {layout.point_count}: {error}: cut short or damaged?"
+        raise FormatError(path, fault) from error
+    if total != layout.point_count:
+        raise FormatError(path, f"the file ends after {total} of {layout.point_count} points")

@@ -1,0 +1,109 @@
+"""The two doors: `align` for clouds, `extract_features` and then `align` for clouds that are used more than once."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from igsp import _core
+from igsp._core import Features, Result
+from igsp.arrays import Points, matrix_array, points_array
+from igsp.files import read_points
+from igsp.progress import ProgressBar, ProgressFunction
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from igsp.option_keywords import OptionKeywords
+
+Progress = bool | ProgressFunction
+
+
+def align(
+    source: object,
+    target: object,
+    *,
+    initial: npt.ArrayLike | None = None,
+    progress: Progress = False,
+    **options: Unpack[OptionKeywords],
+) -> Result:
+    """The rigid transformation that puts `source` onto `target`, without an initial guess, and whether to believe it.
+
+    `source`, `target`: each a path, an (N, 3) array in one common unit of length, an Open3D, PyVista or laspy cloud, or
+        the Features of one. A C-contiguous float64 array is not copied; do not change it while the call runs.
+    `initial`: (4, 4) guess of target_from_source; it is checked and refined if it holds, there is no search.
+    `progress`: True draws bars on standard error; a function is called with stage and share done, see ProgressFunction.
+    `options`: as `igsp.options()` lists them, such as voxel_size [units of the cloud], dof=4, preset="paper", threads.
+
+    A pair that cannot be registered is a Result that says so. Raises ValueError (empty cloud, NaN, wrong shape, option
+    out of range), TypeError (unknown option), OSError (a file), igsp.Cancelled. The interpreter lock is released, and
+    Ctrl-C stops the run.
+    """
+    keywords = _plain(options)
+    guess = None if initial is None else matrix_array(initial, "initial")
+    with _progress_function(progress) as report:
+        if not isinstance(source, Features) and not isinstance(target, Features):
+            return _core.align_points(_load(source, "source"), _load(target, "target"), guess, keywords, report)
+        _share_voxel_size(source, target, keywords)
+        return _core.align_features(
+            _features(source, "source", keywords, report),
+            _features(target, "target", keywords, report),
+            guess,
+            keywords,
+            report,
+        )
+
+
+def extract_features(cloud: object, *, progress: Progress = False, **options: Unpack[OptionKeywords]) -> Features:
+    """Everything that depends on one cloud alone, to align it several times. See `align` for the parameters.
+
+    Clouds that shall meet must be extracted with the same options; `align` of a cloud and of Features takes the voxel
+    size from the Features.
+    """
+    with _progress_function(progress) as report:
+        return _core.extract_features(_load(cloud, "cloud"), _plain(options), report)
+
+
+def options(**options: Unpack[OptionKeywords]) -> dict[str, bool | int | float | str]:
+    """All options with their values, after the preset and the given ones; `align(..., **options)` takes them."""
+    return _core.resolve_options(_plain(options))
+
+
+def _plain(options: OptionKeywords) -> dict[str, Any]:
+    """Paths as strings, NumPy's numbers as Python's."""
+
+    def plain(value: Any) -> Any:
+        if isinstance(value, np.generic):
+            return value.item()
+        return os.fspath(value) if isinstance(value, os.PathLike) else value
+
+    return {name: plain(value) for name, value in options.items()}
+
+
+def _load(cloud: object, name: str) -> Points:
+    if isinstance(cloud, (str, os.PathLike)):
+        return read_points(cloud)
+    return points_array(cloud, name)
+
+
+def _share_voxel_size(source: object, target: object, keywords: dict[str, Any]) -> None:
+    features = source if isinstance(source, Features) else target
+    assert isinstance(features, Features)
+    given = _core.resolve_options(keywords)["voxel_size"]  # a file of options may say it, too
+    if given and given != features.voxel_size:
+        raise ValueError(f"voxel_size is {given}, but the features were extracted with {features.voxel_size}")
+    keywords["voxel_size"] = features.voxel_size
+
+
+def _features(cloud: object, name: str, keywords: dict[str, Any], report: ProgressFunction | None) -> Features:
+    return cloud if isinstance(cloud, Features) else _core.extract_features(_load(cloud, name), keywords, report)
+
+
+def _progress_function(progress: Progress) -> contextlib.AbstractContextManager[ProgressFunction | None]:
+    if callable(progress):
+        return contextlib.nullcontext(progress)
+    return ProgressBar() if progress else contextlib.nullcontext(None)

@@ -1,0 +1,56 @@
+#include "igsp/features.hpp"
+
+#include <fmt/format.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "arrays.hpp"
+#include "options.hpp"
+#include "progress.hpp"
+
+namespace igsp::python {
+namespace {
+
+template <auto member>
+auto view(const Features& self) {
+  return read_only_view(self.*member);
+}
+
+Features extract(const PointsIn& cloud, const Keywords& keywords, nb::handle progress) {
+  const Options options = options_of(keywords);
+  const ProgressCallback callback = progress_of(progress);
+  nb::gil_scoped_release unlocked;
+  return extract_features(view_of(cloud), options, callback);
+}
+
+}  // namespace
+
+void bind_features(nb::module_& module) {
+  nb::class_<Features>(module, "Features",
+                       "What the method knows of one cloud. Coordinates are relative to `origin` (world = local + "
+                       "origin). N voxels, K keypoints. Its arrays are read-only.")
+      .def_prop_ro("origin", &view<&Features::origin>, "(3,) float64.")
+      .def_ro("voxel_size", &Features::voxel_size, "[units of the cloud].")
+      .def_prop_ro("points", &view<&Features::points>, "(N, 3) float64: voxel centroids, local.")
+      .def_prop_ro("curvature", &view<&Features::curvature>, "(N,) float32: surface variation, [0, 1/3].")
+      .def_prop_ro("normals", &view<&Features::normals>, "(N, 3) float64: unit, sign arbitrary.")
+      .def_prop_ro("fine_points", &view<&Features::fine_points>,
+                   "(M, 3) float64: centroids of finer voxels, local: what fine registration works on.")
+      .def_prop_ro("keypoints", &view<&Features::keypoints>,
+                   "(K,) uint32: indices into `points`, by curvature descending.")
+      .def_prop_ro("frames", &view<&Features::frames>,
+                   "(K, 3, 3) float64: columns x, y, n of the local reference frame.")
+      .def_prop_ro("descriptors", &view<&Features::descriptors>,
+                   "(K, 7) uint64: Binary Shape Context, 435 bits padded to 448.")
+      .def_ro("cloud_points", &Features::cloud_points, "Points of the cloud as given.")
+      .def_ro("timings_s", &Features::timings_s, "(stage, wall seconds), in order.")
+      .def("__repr__", [](const Features& features) {
+        return fmt::format("<Features: {} keypoints of {} voxels of {:.4g}>", features.keypoints.size(),
+                           features.points.size(), features.voxel_size);
+      });
+  module.def("extract_features", &extract, nb::arg("cloud").noconvert(), nb::arg("options"),
+             nb::arg("progress").none());
+}
+
+}  // namespace igsp::python
