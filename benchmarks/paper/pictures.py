@@ -15,7 +15,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from clouds import read_points, transformed
-from rows import Row, read_rows
+from rows import Row, in_order, read_rows
 from style import plt, save
 
 SHOWN_POINTS = 12000
@@ -24,19 +24,15 @@ OVERLAP_RADIUS, FARTHEST = 2.0, 6.0  # [voxels]: who overlaps; end of the colour
 
 @dataclass
 class View:
-    """A pair and preset to show, and from where."""
+    """How a data set is shown: along the target's z axis."""
 
-    dataset: str
-    preset: str
-    axes: tuple[int, int]  # of the target's frame: to the right, upwards
     unit: str
     per_metre: float
-    ceiling_m: float = np.inf  # along the third axis: what lies above hides the rest
+    ceiling_m: float = np.inf  # what lies above it hides the rest
 
 
-VIEWS = [View("Stanford", "paper", (0, 1), "mm", 1000.0), View("Stanford", "default", (0, 1), "mm", 1000.0),
-         View("Stanford 80 %", "paper", (0, 1), "mm", 1000.0), View("Facade", "paper", (0, 1), "m", 1.0),
-         View("Park", "paper", (0, 1), "m", 1.0), View("Indoor", "paper", (0, 1), "m", 1.0, 0.8)]
+VIEWS = {"Stanford": View("mm", 1000.0), "Stanford 80 %": View("mm", 1000.0), "Facade": View("m", 1.0),
+         "Park": View("m", 1.0), "Indoor": View("m", 1.0, 0.8)}
 
 
 def pose_of(row: Row) -> np.ndarray:
@@ -57,40 +53,50 @@ def thinned(points: np.ndarray) -> np.ndarray:
     return points[:: max(1, len(points) // SHOWN_POINTS)]
 
 
-def draw_row(line: np.ndarray, view: View, pair: Row, folder: Path, run: list[Row], voxel_size: float):
+def draw_row(line: np.ndarray, pair: Row, folder: Path, run: list[Row], voxel_size: float):
     """Four pictures; returns the coloured points of the last for the colour bar."""
     source, whole_target = read_points(folder / pair["source"]), read_points(folder / pair["target"])
-    tree = cKDTree(whole_target)
-    up = 3 - sum(view.axes)
+    tree, view = cKDTree(whole_target), VIEWS[pair["group"]]
     truth = np.loadtxt(folder / pair["truth"]).reshape(4, 4)
     start = centroids_aligned(source, whole_target)
-    source = thinned(source[transformed(truth, source)[:, up] < view.ceiling_m])
-    target = thinned(whole_target[whole_target[:, up] < view.ceiling_m])
+    source = thinned(source[transformed(truth, source)[:, 2] < view.ceiling_m])
+    target = thinned(whole_target[whole_target[:, 2] < view.ceiling_m])
     overlaps = tree.query(transformed(truth, source))[0] < OVERLAP_RADIUS * voxel_size
     shown = [("centroids aligned", start)] + [(f"after iteration {row['k']}", pose_of(row))
                                               for row in (run[0], run[len(run) // 2], run[-1])]
     for axis, (title, pose) in zip(line, shown):
         moved = transformed(pose, source)
-        order = np.argsort(moved[:, up])
+        order = np.argsort(moved[:, 2])
         order = order[overlaps[order]]
         distances = tree.query(moved[order])[0]
         for points, colour in ((target, "0.85"), (moved[~overlaps], "0.6")):
-            axis.scatter(*(view.per_metre * points[:, a] for a in view.axes), s=0.3, c=colour, linewidths=0,
+            axis.scatter(*(view.per_metre * points[:, a] for a in (0, 1)), s=0.3, c=colour, linewidths=0,
                          rasterized=True)
-        points = axis.scatter(*(view.per_metre * moved[order, a] for a in view.axes), s=0.7, linewidths=0,
+        points = axis.scatter(*(view.per_metre * moved[order, a] for a in (0, 1)), s=0.7, linewidths=0,
                               c=view.per_metre * distances, cmap="viridis_r", vmin=0, rasterized=True,
                               vmax=view.per_metre * FARTHEST * voxel_size)
         axis.set_title(title, fontsize=8)
         low, high = (np.percentile(view.per_metre * whole_target, share, axis=0) for share in (2, 98))
         room = 0.25 * (high - low).max()
-        axis.set(aspect="equal", xlim=(low[view.axes[0]] - room, high[view.axes[0]] + room),
-                 ylim=(low[view.axes[1]] - room, high[view.axes[1]] + room),
-                 xlabel=f"{'xyz'[view.axes[0]]} [{view.unit}]")
+        axis.set(aspect="equal", xlim=(low[0] - room, high[0] + room),
+                 ylim=(low[1] - room, high[1] + room),
+                 xlabel=f"x [{view.unit}]")
         axis.tick_params(labelsize=7)
         axis.xaxis.label.set_size(8)
         axis.grid(False)
-    line[0].set_ylabel(f"{view.dataset}, {view.preset} preset\n{'xyz'[view.axes[1]]} [{view.unit}]", fontsize=8)
+    line[0].set_ylabel(f"{pair['group']}, {run[0]['preset']} preset\ny [{view.unit}]", fontsize=8)
     return points
+
+
+def rows_to_show(pairs: list[Row], registrations: list[Row]) -> list[tuple[Row, str]]:
+    """The first pair of every data set with the paper's preset, and with the default one where that is wrong."""
+    shown = []
+    for dataset in in_order(pairs, "group"):
+        pair = next(pair for pair in pairs if pair["group"] == dataset)
+        shown.append((pair, "paper"))
+        if not any(row["right"] for row in registrations if row["pair"] == pair["name"] and row["preset"] == "paper"):
+            shown.append((pair, "default"))
+    return shown
 
 
 def main() -> None:
@@ -101,14 +107,15 @@ def main() -> None:
     arguments = parser.parse_args()
     pairs = read_rows(arguments.pairs / "cases.csv")
     iterations = read_rows(arguments.data / "iterations.csv")
-    voxel_sizes = {row["pair"]: row["voxel_size"] for row in read_rows(arguments.data / "registrations.csv")}
-    views = [view for view in VIEWS if any(pair["group"] == view.dataset for pair in pairs)]
-    figure, axes = plt.subplots(len(views), 4, figsize=(9.6, 2.35 * len(views)), squeeze=False, layout="constrained")
-    for line, view in zip(axes, views):
-        pair = next(pair for pair in pairs if pair["group"] == view.dataset)
-        run = [row for row in iterations if row["pair"] == pair["name"] and row["preset"] == view.preset]
-        points = draw_row(line, view, pair, arguments.pairs, run, voxel_sizes[pair["name"]])
-        figure.colorbar(points, ax=line.tolist(), label=f"distance [{view.unit}]", fraction=0.02, extend="max")
+    registrations = read_rows(arguments.data / "registrations.csv")
+    shown = rows_to_show(pairs, registrations)
+    figure, axes = plt.subplots(len(shown), 4, figsize=(9.6, 2.35 * len(shown)), squeeze=False, layout="constrained")
+    for line, (pair, preset) in zip(axes, shown):
+        run = [row for row in iterations if row["pair"] == pair["name"] and row["preset"] == preset]
+        voxel_size = next(row["voxel_size"] for row in registrations if row["pair"] == pair["name"])
+        points = draw_row(line, pair, arguments.pairs, run, voxel_size)
+        label = f"distance [{VIEWS[pair['group']].unit}]"
+        figure.colorbar(points, ax=line.tolist(), label=label, fraction=0.02, extend="max")
     save(figure, arguments.out / "fig4_iterations")
 
 
