@@ -63,17 +63,18 @@ def draw_points(axes, points, colour, size, label=None):
     axes.scatter(points[:, 0], points[:, 1], s=size, c=colour, linewidths=0, label=label)
 
 
-def draw_matches(axes, run, iteration, matrix):
-    """Lines between the matched keypoints, the source where `matrix` puts it; far ones dashed and dark."""
-    source = transform(matrix, np.array(run["source_keypoints"]))
-    target = np.array(run["target_keypoints"])
+def draw_matches(axes, run, iteration, aligned, target, shift):
+    """The source at its final pose, shifted aside, and lines between the matched keypoints; far ones dashed and dark."""
+    source_keypoints = transform(run["target_from_source"], np.array(run["source_keypoints"]))
+    target_keypoints = np.array(run["target_keypoints"])
     pairs = np.array(iteration["correspondences"])
-    far = np.linalg.norm(source[pairs[:, 0]] - target[pairs[:, 1]], axis=1) > 2.5 * run["voxel_size"]
-    for (i, j), is_far in zip(pairs, far):
-        axes.plot(*np.array([source[i], target[j]])[:, :2].T, c="black" if is_far else "#1a9850", lw=0.8,
+    ends = np.stack([source_keypoints[pairs[:, 0]], target_keypoints[pairs[:, 1]]], axis=1)
+    far = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1) > 2.5 * run["voxel_size"]
+    draw_points(axes, target, "#9a9a9a", 0.3)
+    draw_points(axes, aligned + shift, "#c0392b", 0.3)
+    for line, is_far in zip(ends, far):
+        axes.plot(*(line + [shift, np.zeros(3)])[:, :2].T, c="black" if is_far else "#1a9850", lw=1.0 if is_far else 0.4,
                   ls="--" if is_far else "-")
-    draw_points(axes, source, "#c0392b", 6)
-    draw_points(axes, target, "#2c3e90", 6)
     return len(pairs), int(far.sum())
 
 
@@ -82,16 +83,17 @@ def draw_method(igsp, source_file, target_file, folder):
     source, target = read_ply(source_file), read_ply(target_file)
     run = align(igsp, source_file, target_file, f"{folder}/run.json")
     aligned = transform(run["target_from_source"], source)
-    figure, axes = plt.subplots(2, 2, figsize=(10, 9.2), sharex=True, sharey=True)
+    figure, axes = plt.subplots(2, 2, figsize=(10, 9.2))
     keypoints, matched, fitted, rival = axes.flat
+    low, high = np.percentile(np.vstack([target, aligned]), [0.5, 99.5], axis=0)
 
     draw_points(keypoints, target, "#bbbbbb", 0.3)
     draw_points(keypoints, np.array(run["target_keypoints"]), "#2c3e90", 6)
     keypoints.set_title(f"keypoints of the target: {run['keypoints']['target']}")
 
     first = run["iterations"][0]
-    draw_points(matched, target, "#dddddd", 0.3)
-    count, far = draw_matches(matched, run, first, run["target_from_source"])
+    aside = np.array([0, 1.1 * (high[1] - low[1]), 0])
+    count, far = draw_matches(matched, run, first, aligned, target, aside)
     matched.set_title(f"iteration 1: {count} matches, T = {first['t_cd']:.0f} bits;\n"
                       f"{far} of them (dashed) far apart at the final pose")
 
@@ -105,9 +107,8 @@ def draw_method(igsp, source_file, target_file, folder):
     if run["runner_up"]:
         draw_points(rival, transform(run["runner_up"]["target_from_source"], source), "#c0392b", 0.3)
         rival.set_title(f"the runner-up pose: explains {100 * run['runner_up']['share']:.0f} % as much")
-    low, high = np.percentile(np.vstack([target, aligned]), [0.5, 99.5], axis=0)
     for one in axes.flat:
-        one.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+        one.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1], high[1] + (aside[1] if one is matched else 0)))
     for one in axes[1]:
         one.set_xlabel("x [m]")
     for one in axes[:, 0]:
