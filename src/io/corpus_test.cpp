@@ -7,7 +7,7 @@
 namespace igsp::io {
 namespace {
 
-const auto corpus = std::filesystem::path(__FILE__).parent_path() / "../../fuzz/corpus";
+const auto corpus = std::filesystem::path(IGSP_CORPUS);
 
 /// What the fuzzer has found and what it starts from: all of it is read or refused with a FileError, as PLY, as PCD (by
 /// content) and as text.
