@@ -4,7 +4,7 @@ jobs := $(shell nproc)
 igsp := build/release/bin/igsp
 demo := build/demo
 
-.PHONY: all build setup demo test deb docs wheel bench bench-peers calibrate paper asan tsan fuzz format install clean
+.PHONY: all build setup demo test deb docs wheel bench bench-scrambles bench-peers calibrate paper asan tsan fuzz format install clean
 
 all: build
 
@@ -44,6 +44,14 @@ bench: setup
 	cmake --build --preset release
 	set -e; for benchmark in build/release/bin/*_benchmark; do $$benchmark; done
 
+# Every case under twenty scrambles: the first tables of docs/benchmarks.md. Eight minutes of one core.
+scans ?= ../shared/data
+bench-scrambles: setup
+	cmake --preset release
+	cmake --build --preset release --target igsp_app
+	rm -f docs/data/cases_20_scrambles.csv
+	/usr/bin/python3 benchmarks/scrambles.py $(igsp) $(scans)/cases.csv docs/data/cases_20_scrambles.csv --jobs $(jobs)
+
 # igsp and other programs on the same pairs: docs/benchmarks-peers.md, its rows and pictures. Hours for all of it; what is
 # left of an interrupted run is done by the next. A part of it: peers_options="--every 4 --minutes 50", "--only bunny".
 peers_cases ?= ../shared/data/cases.csv
@@ -70,7 +78,6 @@ calibrate:
 
 # What docs/paper/ shows: the paper's tables and figures, with the real scans in `scans` if they are there. About ten
 # minutes of one core.
-scans ?= ../shared/data
 paper_data := docs/paper/data
 paper:
 	@scripts/setup.sh python3-matplotlib libpcl-dev

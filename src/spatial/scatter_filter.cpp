@@ -24,13 +24,12 @@ struct Occupancy {
 };
 
 Occupancy occupancy(PointView cloud, std::size_t stride, const Bounds& bounds, double cell_size) {
-  std::vector<bool> seen(std::size_t{1} << slot_bits, false);
-  std::size_t occupied = 0;
+  std::vector<std::uint8_t> seen(std::size_t{1} << slot_bits, 0);
+  const double inverse_cell_size = 1.0 / cell_size;
   for (std::size_t i = 0; i < cloud.size(); i += stride) {
-    const std::size_t slot = cell_hash((cloud[i] - bounds.min) / cell_size) >> (64 - slot_bits);
-    occupied += !seen[slot];
-    seen[slot] = true;
+    seen[cell_hash((cloud[i] - bounds.min) * inverse_cell_size) >> (64 - slot_bits)] = 1;
   }
+  const auto occupied = std::count(seen.begin(), seen.end(), 1);
   return {static_cast<double>(occupied), (((bounds.max - bounds.min) / cell_size).array().floor() + 1).prod()};
 }
 
