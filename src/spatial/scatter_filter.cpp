@@ -11,23 +11,22 @@ namespace igsp {
 namespace {
 
 constexpr int slot_bits = 18;
-constexpr std::size_t max_sample = 200000;                  // of more points every second, third, ... is looked at
 constexpr std::array<double, 3> cells_across{16, 64, 256};  // along the diagonal
 constexpr double min_layers = 4;      // across the thinnest side: in a flat box a surface alone looks as dense as noise
 constexpr double max_occupied = 0.8;  // more says too little about what is empty
 constexpr double sigmas = 3.0;        // of the noise's Poisson distribution
 constexpr double min_kept = 0.6;      // what is most of the cloud is no noise
-constexpr double max_kept = 0.98;     // less noise does no harm, and the lone far points of a clean scan are worth keeping
+constexpr double max_kept = 0.98;  // less noise does no harm, and the lone far points of a clean scan are worth keeping
 
 struct Occupancy {
   double occupied, cells;
 };
 
-Occupancy occupancy(PointView cloud, std::size_t stride, const Bounds& bounds, double cell_size) {
+Occupancy occupancy(PointView cloud, const Bounds& bounds, double cell_size) {
   std::vector<std::uint8_t> seen(std::size_t{1} << slot_bits, 0);
   const double inverse_cell_size = 1.0 / cell_size;
-  for (std::size_t i = 0; i < cloud.size(); i += stride) {
-    seen[cell_hash((cloud[i] - bounds.min) * inverse_cell_size) >> (64 - slot_bits)] = 1;
+  for (const Eigen::Vector3d& point : cloud) {
+    seen[cell_hash((point - bounds.min) * inverse_cell_size) >> (64 - slot_bits)] = 1;
   }
   const auto occupied = std::count(seen.begin(), seen.end(), 1);
   return {static_cast<double>(occupied), (((bounds.max - bounds.min) / cell_size).array().floor() + 1).prod()};
@@ -36,16 +35,15 @@ Occupancy occupancy(PointView cloud, std::size_t stride, const Bounds& bounds, d
 }  // namespace
 
 double scatter_density(PointView cloud, const Bounds& bounds) {
-  const std::size_t stride = std::max<std::size_t>(1, cloud.size() / max_sample);
   double density = std::numeric_limits<double>::infinity();
   for (const double across : cells_across) {
     const double cell_size = bounds.diagonal() / across;
     if ((bounds.max - bounds.min).minCoeff() < min_layers * cell_size) continue;
-    const Occupancy found = occupancy(cloud, stride, bounds, cell_size);
+    const Occupancy found = occupancy(cloud, bounds, cell_size);
     if (found.occupied > max_occupied * found.cells) continue;
     // Of cells with a mean of n points the share exp(-n) stays empty.
     const double mean = -std::log(1 - found.occupied / found.cells);
-    density = std::min(density, mean * static_cast<double>(stride) / std::pow(cell_size, 3));
+    density = std::min(density, mean / std::pow(cell_size, 3));
   }
   return std::isfinite(density) ? density : 0.0;
 }
