@@ -23,10 +23,11 @@ demo: setup
 	$(igsp) align $(demo)/station_1.ply $(demo)/station_0.ply --transform $(demo)/estimate.txt
 	$(igsp) evaluate --transform $(demo)/estimate.txt --truth $(demo)/station_1_to_0.txt --source $(demo)/station_1.ply
 
-# dpkg-dev and fakeroot make and install the packages, the shells and mandoc judge completion and manual page, MkDocs
-# builds the site.
+# What only the tests need. dpkg-dev and fakeroot make and install the packages, the shells and mandoc judge completion and
+# manual page, MkDocs builds the site, Chromium opens the report page.
+test_packages := dpkg-dev fakeroot fish man-db mandoc mkdocs-material zsh chromium chromium-driver python3-selenium
 test: build
-	@scripts/setup.sh dpkg-dev fakeroot fish man-db mandoc mkdocs-material zsh
+	@scripts/setup.sh $(test_packages)
 	ctest --preset release -j $(jobs)
 
 # The Python package, into dist/.
@@ -34,7 +35,8 @@ wheel: setup
 	/usr/bin/python3 -m venv build/wheel
 	CXX=c++ build/wheel/bin/pip wheel . --no-deps --wheel-dir dist  # the compiler of the presets: ccache knows its objects
 
-asan tsan: setup
+asan tsan:
+	@scripts/setup.sh $(test_packages)
 	cmake --preset $@
 	cmake --build --preset $@
 	ctest --preset $@ -j $(jobs)

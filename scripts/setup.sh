@@ -9,7 +9,6 @@ packages=(
   libjs-three libjs-chart.js
   libgtest-dev librapidcheck-dev libbenchmark-dev liblemon-dev python3 python3-numpy python3-scipy
   python3-dev python3-venv ccache
-  chromium chromium-driver python3-selenium
   "$@"
 )
 
