@@ -6,6 +6,7 @@
 
 #include "estimation/robust_fit.hpp"
 #include "igsp/evaluation.hpp"
+#include "matching/consistent_assignment.hpp"
 
 namespace igsp {
 namespace {
@@ -60,6 +61,17 @@ std::vector<std::uint32_t> consistent_subset(const ConsistencyGraph& graph, std:
   return subset;
 }
 
+// The pairs of the one assignment that the whole graph prefers, weighted by their support.
+std::vector<PointPair> preferred_by_all(std::span<const Candidate> candidates, const ConsistencyGraph& graph,
+                                        std::span<const PointPair> pairs, std::size_t sources, std::size_t targets) {
+  const std::vector<double> weights = consistency_weights(graph);
+  std::vector<PointPair> preferred;
+  for (const std::uint32_t c : consistent_assignment(candidates, weights, sources, targets)) {
+    preferred.push_back({pairs[c].source, pairs[c].target, weights[c]});
+  }
+  return preferred;
+}
+
 }  // namespace
 
 bool same_pose(const Transformation& a, const Transformation& b, const Eigen::Vector3d& centre, double voxel_size) {
@@ -78,6 +90,18 @@ std::vector<Hypothesis> propose_hypotheses(std::span<const Candidate> candidates
   const std::array<double, 5> scales{6 * voxel_size, 4 * voxel_size, 3 * voxel_size, 2 * voxel_size, 2 * voxel_size};
 
   std::vector<Hypothesis> hypotheses;
+  // Fits `subset`, then all pairs robustly from there; kept unless it repeats an earlier one at `place`.
+  const auto propose = [&](std::span<const PointPair> subset, const Eigen::Vector3d& place) {
+    const auto initial = rigid_fit(subset, options.degrees_of_freedom);
+    if (!initial) return;
+    const auto fit = robust_fit(pairs, *initial, scales, options.degrees_of_freedom);
+    if (!fit) return;
+    const bool repeated = std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) {
+      return same_pose(h.target_from_source, *fit, place, voxel_size);
+    });
+    if (!repeated) hypotheses.push_back({*fit, count_inliers(pairs, *fit, tolerance)});
+  };
+  propose(preferred_by_all(candidates, graph, pairs, source.size(), target.size()), Eigen::Vector3d::Zero());
   for (const Ranked& seed : ranked_seeds(graph)) {
     if (hypotheses.size() == static_cast<std::size_t>(options.hypotheses.max_proposed)) break;
     const PointPair& seed_pair = pairs[seed.candidate];
@@ -87,14 +111,7 @@ std::vector<Hypothesis> propose_hypotheses(std::span<const Candidate> candidates
     if (explained) continue;
     std::vector<PointPair> subset;
     for (const std::uint32_t c : consistent_subset(graph, seed.candidate)) subset.push_back(pairs[c]);
-    const auto initial = rigid_fit(subset, options.degrees_of_freedom);
-    if (!initial) continue;
-    const auto fit = robust_fit(pairs, *initial, scales, options.degrees_of_freedom);
-    if (!fit) continue;
-    const bool repeated = std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) {
-      return same_pose(h.target_from_source, *fit, seed_pair.source, voxel_size);
-    });
-    if (!repeated) hypotheses.push_back({*fit, count_inliers(pairs, *fit, tolerance)});
+    propose(subset, seed_pair.source);
   }
   return hypotheses;
 }

@@ -15,14 +15,15 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 // The normal equations propose directions, sorted by the root mean square change of the distances per unit of motion;
 // the contact after a trial motion decides. The equations alone cannot: an endless corridor lies at 0.01 to 0.05 and
-// scenes with corners above 0.2, but stray normals of sparse scan lines, far out on a long lever, lift a plane's rotation
-// about its normal to 0.6.
+// scenes with corners above 0.2, but stray normals of sparse scan lines, far out on a long lever, lift a plane's
+// rotation about its normal to 0.6.
 constexpr double well_fixed = 0.7;
-constexpr double trial_motion = 8.0;          // voxels
-constexpr double unchanged_contact = 0.975;   // corridors, planes: 0.98 and more; others: at most 0.93
-constexpr double hardly_seen = 0.02;          // bodies of revolution: 0.005 to 0.016, which is next to proof, ...
-constexpr double similar_contact = 0.95;      // ... so a pose that is a little off may touch a little less
-constexpr double search_radius = 1.5;       // voxels
+constexpr double loosest = 0.15;             // where no direction lies below, none of them is free
+constexpr double trial_motion = 8.0;         // voxels
+constexpr double unchanged_contact = 0.975;  // corridors, planes: 0.98 and more; others: at most 0.93
+constexpr double hardly_seen = 0.02;         // bodies of revolution: 0.005 to 0.016, which is next to proof, ...
+constexpr double similar_contact = 0.95;     // ... so a pose that is a little off may touch a little less
+constexpr double search_radius = 1.5;        // voxels
 constexpr std::size_t max_points = 1500;
 
 constexpr double fine_normal_radius = 1.5;  // voxels
@@ -48,7 +49,8 @@ std::string describe(const Vector6& motion) {
 Transformation motion_about(const Eigen::Vector3d& centre, const Vector6& motion, double size) {
   const Eigen::Vector3d rotation = motion.head<3>() / size;
   Transformation result = Transformation::Identity();
-  if (rotation.norm() > 0) result.linear() = Eigen::AngleAxisd(rotation.norm(), rotation.normalized()).toRotationMatrix();
+  if (rotation.norm() > 0)
+    result.linear() = Eigen::AngleAxisd(rotation.norm(), rotation.normalized()).toRotationMatrix();
   result.translation() = centre + motion.tail<3>() - result.linear() * centre;
   return result;
 }
@@ -99,6 +101,8 @@ std::vector<FreeDirection> free_directions(const PreparedCloud& moved, const Pre
   const Matrix6 scaled = scale.asDiagonal() * at_pose.hessian * scale.asDiagonal();
   // Normals are unit vectors, so the trace of the translations is the sum of the weights.
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled / scaled.bottomRightCorner<3, 3>().trace());
+
+  if (solver.eigenvalues()[0] > loosest * loosest) return {};
 
   const double contact = surface_contact(moved, fixed, fixed_from_moved).share;
   const auto still_touches = [&](const Vector6& motion, double share) {
