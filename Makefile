@@ -23,9 +23,9 @@ demo: setup
 	$(igsp) align $(demo)/station_1.ply $(demo)/station_0.ply --transform $(demo)/estimate.txt
 	$(igsp) evaluate --transform $(demo)/estimate.txt --truth $(demo)/station_1_to_0.txt --source $(demo)/station_1.ply
 
-# What only the tests need. dpkg-dev and fakeroot make and install the packages, the shells and mandoc judge completion and
+# What only the tests need. dpkg-dev, file and fakeroot make and install the packages, the shells and mandoc judge completion and
 # manual page, MkDocs builds the site, Chromium opens the report page.
-test_packages := dpkg-dev fakeroot fish man-db mandoc mkdocs-material zsh chromium chromium-driver python3-selenium
+test_packages := dpkg-dev fakeroot file fish man-db mandoc mkdocs-material zsh chromium chromium-driver python3-selenium
 test: build
 	@scripts/setup.sh $(test_packages)
 	ctest --preset release -j $(jobs)
@@ -115,7 +115,7 @@ install: build
 
 # build/deb/igsp_*.deb, the command, and build/deb/libigsp-dev_*.deb, the library to build with.
 deb: setup
-	@scripts/setup.sh dpkg-dev
+	@scripts/setup.sh dpkg-dev file
 	cmake --preset release
 	cmake --build --preset release --target igsp_app
 	cpack --config build/release/CPackConfig.cmake -B build/deb
