@@ -106,7 +106,7 @@ RC_GTEST_PROP(Candidates, AreTheBestOfBothSidesThatStandOutMost, (std::uint64_t 
   for (std::size_t c = 0; c < all.size(); ++c) {
     found.emplace(all[c].source, all[c].target);
     RC_ASSERT(std::abs(all[c].score - table.score(all[c].source, all[c].target)) < 1e-4);
-    RC_ASSERT(c == 0 || all[c - 1].score >= all[c].score);
+    RC_ASSERT((c == 0 || all[c - 1].score >= all[c].score));  // the macro's own || would look at both sides
   }
   RC_ASSERT(found.size() == all.size());
   RC_ASSERT(found == expected);
