@@ -67,7 +67,7 @@ struct Precision {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  ///< inverse; 0 where not determined
-  std::vector<FreeDirection> free_directions;
+  std::vector<FreeDirection> free_directions;  ///< at the pose; where it is refused and has none, of the target alone
 };
 
 /// What the verdict is made of: two independent questions to the clouds at the pose.

@@ -10,7 +10,7 @@ namespace {
 
 // The graph of one motion is nearly a clique, whose eigenvector stands out after a few multiplications.
 constexpr int multiplications = 8;
-constexpr double threshold_bits = 100.0;  // T_cd: only the order of the costs matters, so any number would do
+constexpr double threshold_bits = 100.0;  // T_cd: the costs are shares of it, so any number would do
 
 }  // namespace
 
