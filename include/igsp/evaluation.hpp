@@ -31,7 +31,8 @@ struct MatchQuality {
 };
 
 /// `correspondences` are indices into the keypoints, both in their own frames, as a Result holds them. `radius` in the
-/// unit of the cloud, > 0; the usual choice is a third of the suppression radius r_k.
+/// unit of the cloud, > 0; the usual choice is a third of the suppression radius r_k. Throws InvalidArgument for an
+/// index beyond the keypoints or another radius.
 MatchQuality match_quality(std::span<const KeypointMatch> correspondences, PointView source_keypoints,
                            PointView target_keypoints, const Transformation& truth, double radius);
 

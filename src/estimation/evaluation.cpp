@@ -39,6 +39,10 @@ MatchQuality match_quality(std::span<const KeypointMatch> correspondences, Point
   MatchQuality quality;
   quality.matched = correspondences.size();
   for (const KeypointMatch& match : correspondences) {
+    if (match.source >= moved.size() || match.target >= target_keypoints.size()) {
+      throw InvalidArgument(fmt::format("correspondences has ({}, {}); there are {} source and {} target keypoints",
+                                        match.source, match.target, moved.size(), target_keypoints.size()));
+    }
     if (is_true_pair(moved[match.source], target_keypoints[match.target])) ++quality.correct;
   }
   // All pairs: a few thousand keypoints at most, and this is no part of a registration.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <array>
 #include <numbers>
 
 #include "core/core_testing.hpp"
@@ -100,6 +101,13 @@ TEST(MatchQuality, ByHand) {
   EXPECT_EQ(quality.possible, 2u);
   EXPECT_DOUBLE_EQ(quality.precision(), 1.0 / 3.0);
   EXPECT_DOUBLE_EQ(quality.recall(), 0.5);
+}
+
+TEST(MatchQuality, IndexBeyondTheKeypointsIsRefused) {
+  const Points one{{0, 0, 0}};
+  for (const KeypointMatch match : {KeypointMatch{1, 0}, KeypointMatch{0, 1}}) {
+    EXPECT_THROW(match_quality(std::array{match}, one, one, Transformation::Identity(), 1.0), InvalidArgument);
+  }
 }
 
 TEST(MatchQuality, NothingMatchedOrPossibleIsZero) {
