@@ -40,8 +40,8 @@ AssignmentProblem descriptor_problem(std::size_t sources, std::size_t targets, d
     below += static_cast<double>(histogram[threshold]);
   }
   AssignmentProblem problem{sources, targets, {}, threshold * igsp::assignment_units_per_bit};
-  for (const igsp::FeaturePair& pair : igsp::feature_pairs_below(all.first(sources), 1, all.last(targets),
-                                                                 static_cast<double>(threshold), 1)) {
+  for (const igsp::FeaturePair& pair :
+       igsp::feature_pairs_below(all.first(sources), 1, all.last(targets), static_cast<double>(threshold), 1)) {
     problem.edges.push_back({pair.source, pair.target, pair.distance * igsp::assignment_units_per_bit});
   }
   return problem;

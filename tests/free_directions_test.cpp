@@ -1,4 +1,5 @@
-// Surfaces that slide along themselves: the answer is a refusal that names every such motion, checked against the scene.
+// Surfaces that slide along themselves: the answer is a refusal that names every such motion, checked against the
+// scene.
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
@@ -89,7 +90,8 @@ TEST_P(FreeDirections, Sphere) {
   const double scale = scale_of(result, scene.pair);
   Motions rotations;
   for (int i = 0; i < 3; ++i)
-    rotations.push_back(rotation_about(Vector3d::Unit(i), scene.target_from_world.translation(), result.precision.centre, scale));
+    rotations.push_back(
+        rotation_about(Vector3d::Unit(i), scene.target_from_world.translation(), result.precision.centre, scale));
   expect_named(result, rotations);
 }
 
@@ -98,8 +100,9 @@ TEST_P(FreeDirections, Plane) {
   const Result result = align(scene.pair.source, scene.pair.target);
   const double scale = scale_of(result, scene.pair);
   const Eigen::Matrix3d axes = scene.target_from_world.linear();
-  expect_named(result, {translation_along(axes.col(0)), translation_along(axes.col(1)),
-                        rotation_about(axes.col(2), scene.target_from_world.translation(), result.precision.centre, scale)});
+  expect_named(result,
+               {translation_along(axes.col(0)), translation_along(axes.col(1)),
+                rotation_about(axes.col(2), scene.target_from_world.translation(), result.precision.centre, scale)});
 }
 
 TEST_P(FreeDirections, Cylinder) {

@@ -1,4 +1,5 @@
-// What must hold of `align` whatever the scene: symmetry, equivariance, independence of order, unit, origin and threads.
+// What must hold of `align` whatever the scene: symmetry, equivariance, independence of order, unit, origin and
+// threads.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,12 +27,12 @@ struct Tolerance {
   double rounding;    // every coordinate rounded anew: rarely, one bit of one descriptor flips
 };
 
-// The paper's loop ends with a fit to the matched keypoints, each good to about a voxel, so one match more or less moves
-// the answer by a good part of a voxel; seen up to 0.8. Of source and target it is symmetric but for rounding.
+// The paper's loop ends with a fit to the matched keypoints, each good to about a voxel, so one match more or less
+// moves the answer by a good part of a voxel; seen up to 0.8. Of source and target it is symmetric but for rounding.
 constexpr Tolerance of_paper = {1.5, 1e-6, 1.5, 1.5};
 
-// The default preset ends with a refinement on the surfaces, which averages over thousands of points; seen up to 0.1. It
-// pulls points of the source onto planes of the target, so that exchanging them is one resampling more.
+// The default preset ends with a refinement on the surfaces, which averages over thousands of points; seen up to 0.1.
+// It pulls points of the source onto planes of the target, so that exchanging them is one resampling more.
 constexpr Tolerance of_default = {0.3, 0.2, 0.2, 0.05};
 
 // Only the order of sums, or the origin that coordinates are relative to, changed: no match may change.
@@ -44,7 +45,9 @@ struct LawCase {
   Tolerance tolerance;
 };
 
-void PrintTo(const LawCase& law, std::ostream* out) { *out << law.preset << " " << law.scene; }
+void PrintTo(const LawCase& law, std::ostream* out) {
+  *out << law.preset << " " << law.scene;
+}
 
 std::string name_of(const ::testing::TestParamInfo<LawCase>& info) {
   return std::string(info.param.preset) + "_" + info.param.scene;
@@ -57,14 +60,12 @@ class Laws : public ::testing::TestWithParam<LawCase> {
   Tolerance tolerance() const { return GetParam().tolerance; }
 };
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Laws,
-                         ::testing::Values(LawCase{"paper", "park", 1.0, of_paper},
-                                           LawCase{"paper", "indoor", 0.1, of_paper},
-                                           LawCase{"paper", "object", 0.02, of_paper},
-                                           LawCase{"default", "park", 0.0, of_default},
-                                           LawCase{"default", "indoor", 0.0, of_default},
-                                           LawCase{"default", "object", 0.0, of_default}),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, Laws,
+    ::testing::Values(LawCase{"paper", "park", 1.0, of_paper}, LawCase{"paper", "indoor", 0.1, of_paper},
+                      LawCase{"paper", "object", 0.02, of_paper}, LawCase{"default", "park", 0.0, of_default},
+                      LawCase{"default", "indoor", 0.0, of_default}, LawCase{"default", "object", 0.0, of_default}),
+    name_of);
 
 void expect_rigid(const Transformation& transformation) {
   const Eigen::Matrix3d rotation = transformation.linear();

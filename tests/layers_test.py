@@ -24,6 +24,9 @@ ALLOWED = {
     "simulation": SPATIAL | {"simulation"},
 }
 APPS_ALLOWED = REGISTRATION | {"io", "config", "simulation"}
+# The rooms of the command, in apps/igsp/: a command's room may use these below it and itself; command_line.cpp, all.
+SHARED_ROOMS = {"shell": set(), "files": {"shell"}, "report": {"shell", "files"}}
+COMMAND_ROOMS = {"align", "benchmark", "completion", "evaluate", "options", "simulate"}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 FORBIDDEN = re.compile(
@@ -59,6 +62,19 @@ def check_layer_includes(root, path, allowed):
             yield f"{path.relative_to(root)}:{number}: relative include {name}; write it from src/ on"
 
 
+def check_rooms(root, command):
+    for room in sorted(path for path in command.iterdir() if path.is_dir()):
+        if room.name not in SHARED_ROOMS and room.name not in COMMAND_ROOMS:
+            yield f"{room.relative_to(root)}: a room without a place; give it one in {Path(__file__).name}"
+            continue
+        allowed = SHARED_ROOMS.get(room.name, set(SHARED_ROOMS)) | {room.name}
+        for path in sources(room):
+            for number, _, name in includes(path):
+                other = name.split("/")[0]
+                if other in SHARED_ROOMS.keys() | COMMAND_ROOMS and other not in allowed:
+                    yield f"{path.relative_to(root)}:{number}: includes {name}, and {other} is not below {room.name}"
+
+
 def check_public_includes(root, path):
     for number, quote, name in includes(path):
         if quote == '"' and not name.startswith("igsp/"):
@@ -85,6 +101,7 @@ def faults(root):
                 yield from check_quiet(root, path)
     for path in sources(root / "apps") + sources(root / "python"):
         yield from check_layer_includes(root, path, APPS_ALLOWED)
+    yield from check_rooms(root, root / "apps" / "igsp")
     for path in sources(root / "include"):
         yield from check_public_includes(root, path)
         yield from check_quiet(root, path)

@@ -83,8 +83,8 @@ TEST(Covariance, IsTheSpreadOverHundredNoiseDrawsOfAnObject) {
   EXPECT_LT(about_truth, 1.8);
 }
 
-// Seen: 1.0 about the mean. About the truth it is 3: surfaces sampled on two different grids pull the answer to one side
-// by a hundredth of a voxel, whatever the noise, and the covariance says nothing of that.
+// Seen: 1.0 about the mean. About the truth it is 3: surfaces sampled on two different grids pull the answer to one
+// side by a hundredth of a voxel, whatever the noise, and the covariance says nothing of that.
 TEST(Covariance, IsTheSpreadOverHundredNoiseDrawsOfARoom) {
   const Draws draws = draw("indoor", 40000, 0.005);
   const double about_mean = draws.mahalanobis(draws.mean());
@@ -106,7 +106,8 @@ TEST_P(PrecisionOf, CovarianceIsTheInverseOfTheInformation) {
   // In units in which both blocks are near 1; otherwise the tolerances would mean nothing.
   const Vector6 deviation = precision.covariance.diagonal().cwiseSqrt();
   ASSERT_GT(deviation.minCoeff(), 0.0);
-  const Matrix6 correlation = deviation.asDiagonal().inverse() * precision.covariance * deviation.asDiagonal().inverse();
+  const Matrix6 correlation =
+      deviation.asDiagonal().inverse() * precision.covariance * deviation.asDiagonal().inverse();
   EXPECT_LT((correlation - correlation.transpose()).norm(), 1e-9);
   EXPECT_EQ(Eigen::LLT<Matrix6>(correlation).info(), Eigen::Success) << "not positive definite";
   const Matrix6 information = deviation.asDiagonal() * precision.information * deviation.asDiagonal();

@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
 #include "config/nearest.hpp"
-#include "exit_codes.hpp"
-#include "help_text.hpp"
 #include "igsp/errors.hpp"
 #include "igsp/version.hpp"
-#include "interrupt.hpp"
+#include "shell/commands.hpp"
+#include "shell/exit_codes.hpp"
+#include "shell/help_text.hpp"
+#include "shell/interrupt.hpp"
 
 namespace igsp::cli {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "foreign_formats.hpp"
+#include "files/foreign_formats.hpp"
 
 namespace igsp::cli {
 

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "dense_assignment.hpp"
+#include "files/output_file.hpp"
 #include "igsp/simulation.hpp"
 #include "matching/hamming.hpp"
-#include "output_file.hpp"
 #include "staged_loop.hpp"
 #include "tables.hpp"
 

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <iostream>
 
-#include "benchmark_cases.hpp"
-#include "benchmark_csv.hpp"
-#include "benchmark_judgement.hpp"
+#include "benchmark/cases.hpp"
+#include "benchmark/csv.hpp"
+#include "benchmark/judgement.hpp"
+#include "files/output_file.hpp"
 #include "igsp/errors.hpp"
 #include "igsp/io.hpp"
 #include "igsp/simulation.hpp"
-#include "output_file.hpp"
 #include "simulation/overlap.hpp"
 #include "spatial/scale.hpp"
 

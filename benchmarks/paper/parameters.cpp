@@ -4,7 +4,7 @@
 #include <iostream>
 #include <numbers>
 
-#include "output_file.hpp"
+#include "files/output_file.hpp"
 #include "staged_loop.hpp"
 #include "tables.hpp"
 

@@ -5,9 +5,9 @@
 #include <stdexcept>
 
 #include "dense_assignment.hpp"
+#include "files/output_file.hpp"
 #include "igsp/align.hpp"
 #include "matching/hamming.hpp"
-#include "output_file.hpp"
 #include "staged_loop.hpp"
 #include "tables.hpp"
 

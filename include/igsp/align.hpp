@@ -21,7 +21,7 @@ Result align(PointView source, PointView target, const Transformation& initial, 
 Result align(const Features& source, const Features& target, const Options& options = {},
              const ProgressCallback& progress = {});
 
-Result align(const Features& source, const Features& target, const Transformation& initial,
-             const Options& options = {}, const ProgressCallback& progress = {});
+Result align(const Features& source, const Features& target, const Transformation& initial, const Options& options = {},
+             const ProgressCallback& progress = {});
 
 }  // namespace igsp

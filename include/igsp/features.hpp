@@ -23,14 +23,14 @@ using Descriptor = std::array<std::uint64_t, bsc_words>;
 struct Features {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   double voxel_size = 0.0;
-  Points points;                          ///< voxel centroids, local
-  std::vector<float> curvature;           ///< per point: surface variation, [0, 1/3]
-  Points normals;                         ///< per point: unit, sign arbitrary
-  Points fine_points;                     ///< centroids of finer voxels, local: what fine registration works on
-  std::vector<std::uint32_t> keypoints;   ///< indices into `points`, by curvature descending
-  std::vector<Eigen::Matrix3d> frames;    ///< per keypoint: columns x, y, n of the local reference frame
-  std::vector<Descriptor> descriptors;    ///< per keypoint, in its frame
-  std::size_t cloud_points = 0;           ///< of the cloud as given
+  Points points;                         ///< voxel centroids, local
+  std::vector<float> curvature;          ///< per point: surface variation, [0, 1/3]
+  Points normals;                        ///< per point: unit, sign arbitrary
+  Points fine_points;                    ///< centroids of finer voxels, local: what fine registration works on
+  std::vector<std::uint32_t> keypoints;  ///< indices into `points`, by curvature descending
+  std::vector<Eigen::Matrix3d> frames;   ///< per keypoint: columns x, y, n of the local reference frame
+  std::vector<Descriptor> descriptors;   ///< per keypoint, in its frame
+  std::size_t cloud_points = 0;          ///< of the cloud as given
   std::vector<std::pair<std::string, double>> timings_s;  ///< per stage, wall seconds, in order
 };
 

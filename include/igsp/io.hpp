@@ -10,13 +10,21 @@
 
 namespace igsp {
 
-enum class FileFormat { ply_ascii, ply_binary_little_endian, ply_binary_big_endian, pcd_ascii, pcd_binary, pcd_binary_compressed, text };
+enum class FileFormat {
+  ply_ascii,
+  ply_binary_little_endian,
+  ply_binary_big_endian,
+  pcd_ascii,
+  pcd_binary,
+  pcd_binary_compressed,
+  text
+};
 
 /// Reads the points of a file in chunks: PLY (ascii, both byte orders), PCD (ascii, binary, binary_compressed) and
 /// text (XYZ, TXT, CSV, PTS). The content decides between them, for text the extension. Properties other than x, y, z
 /// are skipped. Non-finite points are dropped and counted. A file that declares 0 points is an empty cloud, no error.
-/// Memory is bounded by a chunk whatever the file's size, save for PCD binary_compressed, whose body (at most 4 GiB) can
-/// only be decompressed whole.
+/// Memory is bounded by a chunk whatever the file's size, save for PCD binary_compressed, whose body (at most 4 GiB)
+/// can only be decompressed whole.
 class PointReader {
  public:
   static constexpr std::size_t default_chunk = 65536;
@@ -31,7 +39,7 @@ class PointReader {
   PointView next_chunk();
 
   FileFormat format() const;
-  std::size_t dropped() const;  ///< non-finite points met so far
+  std::size_t dropped() const;          ///< non-finite points met so far
   std::size_t declared_points() const;  ///< the header's count; 0 where the format has none
 
  private:
@@ -58,11 +66,12 @@ struct WriteOptions {
 FileFormat format_of(const std::filesystem::path& path);
 
 /// Writes to a temporary name beside `path`, then renames: nothing half-written is left. Every format reads back as
-/// exactly the same coordinates. Throws FileError, and InvalidArgument for a coordinate that is not finite (as a float).
+/// exactly the same coordinates. Throws FileError, and InvalidArgument for a coordinate that is not finite (as a
+/// float).
 void write_points(const std::filesystem::path& path, PointView points, const WriteOptions& options = {});
 
-/// 4x4 row-major text, as in `T.txt`: 16 numbers, or the 12 of its upper three rows, over any lines; # starts a comment.
-/// Throws FileError (also if the matrix is not a rigid motion to 1e-3). The numbers are taken as they are.
+/// 4x4 row-major text, as in `T.txt`: 16 numbers, or the 12 of its upper three rows, over any lines; # starts a
+/// comment. Throws FileError (also if the matrix is not a rigid motion to 1e-3). The numbers are taken as they are.
 Transformation read_transformation(const std::filesystem::path& path);
 void write_transformation(const std::filesystem::path& path, const Transformation& transformation);
 

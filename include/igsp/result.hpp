@@ -47,8 +47,8 @@ enum class Termination {
 std::string_view to_string(Termination termination);
 
 struct CloudSummary {
-  std::size_t points = 0;           ///< as given
-  std::size_t voxels = 0;           ///< after the voxel filter
+  std::size_t points = 0;  ///< as given
+  std::size_t voxels = 0;  ///< after the voxel filter
   std::size_t keypoints = 0;
 };
 
@@ -82,7 +82,8 @@ struct Evidence {
 /// The best other pose that was looked into.
 struct RunnerUp {
   Transformation target_from_source = Transformation::Identity();
-  double share = 0.0;  ///< its agreeing matches in terms of the winner's, [0, 1]: near 1, the two are hard to tell apart
+  double share =
+      0.0;  ///< its agreeing matches in terms of the winner's, [0, 1]: near 1, the two are hard to tell apart
 };
 
 /// What `align` answers. Not being able to register is an answer, never an exception.
@@ -98,11 +99,11 @@ struct Result {
   Evidence evidence;
   std::optional<RunnerUp> runner_up;
   Precision precision;
-  double rmse = 0.0;            ///< inlier RMSE: distances along the normals where the surfaces meet [units of the cloud]
-  double voxel_size = 0.0;      ///< [units of the cloud]
+  double rmse = 0.0;        ///< inlier RMSE: distances along the normals where the surfaces meet [units of the cloud]
+  double voxel_size = 0.0;  ///< [units of the cloud]
   CloudSummary source;
   CloudSummary target;
-  Points source_keypoints;      ///< as given, not moved
+  Points source_keypoints;  ///< as given, not moved
   Points target_keypoints;
   std::vector<IterationRecord> iterations;
   std::vector<std::pair<std::string, double>> timings_s;  ///< per stage, wall seconds, in order

@@ -10,11 +10,12 @@
 namespace igsp {
 
 struct SimulationOptions {
-  int stations = 2;              ///< [1, 64]
-  int points = 200000;           ///< per station, about
-  std::optional<double> noise = {};   ///< standard deviation along the ray [m]; none: the scene's own, 5 mm ("object": 0.1 mm)
-  double station_distance = 0;   ///< between neighbouring stations [m]; 0: the scene's own
-  std::uint64_t seed = 7;        ///< every seed is another scene
+  int stations = 2;     ///< [1, 64]
+  int points = 200000;  ///< per station, about
+  std::optional<double> noise =
+      {};  ///< standard deviation along the ray [m]; none: the scene's own, 5 mm ("object": 0.1 mm)
+  double station_distance = 0;  ///< between neighbouring stations [m]; 0: the scene's own
+  std::uint64_t seed = 7;       ///< every seed is another scene
 };
 
 /// One scan in the scanner's own frame (its origin is the sensor), and where the scanner stood.

@@ -12,12 +12,24 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-constexpr Range any() { return {-infinity, infinity}; }
-constexpr Range above(double low) { return {low, infinity, true}; }
-constexpr Range at_least(double low) { return {low, infinity}; }
-constexpr Range between(double low, double high) { return {low, high}; }
-constexpr Range above_up_to(double low, double high) { return {low, high, true}; }
-constexpr Range either(double low, double high) { return {low, high, false, false, Range::Shape::ends_only}; }
+constexpr Range any() {
+  return {-infinity, infinity};
+}
+constexpr Range above(double low) {
+  return {low, infinity, true};
+}
+constexpr Range at_least(double low) {
+  return {low, infinity};
+}
+constexpr Range between(double low, double high) {
+  return {low, high};
+}
+constexpr Range above_up_to(double low, double high) {
+  return {low, high, true};
+}
+constexpr Range either(double low, double high) {
+  return {low, high, false, false, Range::Shape::ends_only};
+}
 
 // Names of the enumerators, in the order of their values.
 template <typename Enumeration>
@@ -60,8 +72,8 @@ constexpr Option make_option(std::string_view key, std::string_view section, std
   using Field = FieldType<field_of>;
   static_assert(std::is_same_v<Field, bool> || std::is_same_v<Field, int> || std::is_same_v<Field, double> ||
                 std::is_enum_v<Field>);
-  Option option{key,  section,           flag, unit,  range,
-                help, OptionKind::choice, {},   get_field<field_of>, set_field<field_of>};
+  Option option{
+      key, section, flag, unit, range, help, OptionKind::choice, {}, get_field<field_of>, set_field<field_of>};
   if constexpr (std::is_enum_v<Field>) {
     static_assert(!names<Field>.empty(), "list the names of the enumerators above");
     option.choices = names<Field>;
@@ -79,13 +91,19 @@ struct Listed {
   std::size_t section_fields;
 };
 
-#define TOP(field, flag, unit, range, help) \
-  Listed { make_option<[](auto& o) -> auto& { return o.field; }>(#field, "", flag, unit, range, help), 0 }
-#define IN(section, field, flag, unit, range, help)                                                                \
-  Listed {                                                                                                         \
-    make_option<[](auto& o) -> auto& { return o.section.field; }>(#section "." #field, #section, flag, unit, range, \
-                                                                  help),                                           \
-        field_count<decltype(Options::section)>()                                                                  \
+#define TOP(field, flag, unit, range, help)    \
+  Listed {                                     \
+    make_option < [](auto& o) -> auto& {       \
+      return o.field;                          \
+    }                                          \
+    > (#field, "", flag, unit, range, help), 0 \
+  }
+#define IN(section, field, flag, unit, range, help)                                                       \
+  Listed {                                                                                                \
+    make_option < [](auto& o) -> auto& {                                                                  \
+      return o.section.field;                                                                             \
+    }                                                                                                     \
+    > (#section "." #field, #section, flag, unit, range, help), field_count<decltype(Options::section)>() \
   }
 
 // clang-format off
@@ -150,7 +168,9 @@ constexpr auto options_alone = [] {
 
 }  // namespace
 
-std::span<const Option> option_list() { return options_alone; }
+std::span<const Option> option_list() {
+  return options_alone;
+}
 
 std::string_view name_in_section(const Option& option) {
   return option.section.empty() ? option.key : option.key.substr(option.section.size() + 1);

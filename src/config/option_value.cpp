@@ -35,7 +35,9 @@ double number(const OptionValue& value) {
   return std::holds_alternative<int>(value) ? std::get<int>(value) : std::get<double>(value);
 }
 
-bool has_kind(OptionKind kind, const OptionValue& value) { return value.index() == static_cast<std::size_t>(kind); }
+bool has_kind(OptionKind kind, const OptionValue& value) {
+  return value.index() == static_cast<std::size_t>(kind);
+}
 static_assert(std::is_same_v<double, std::variant_alternative_t<std::size_t(OptionKind::real), OptionValue>>);
 
 bool admissible(const Option& option, const OptionValue& value) {

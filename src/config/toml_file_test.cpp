@@ -56,7 +56,9 @@ TEST(Toml, WrittenTextNamesEveryOptionWithItsHelpAndRange) {
   EXPECT_NE(text.find("in (0, 1]"), std::string::npos);
 }
 
-TEST(Toml, EmptyTextIsTheDefault) { expect_same(options_from_toml("", "text"), Options{}); }
+TEST(Toml, EmptyTextIsTheDefault) {
+  expect_same(options_from_toml("", "text"), Options{});
+}
 
 TEST(Toml, WhatIsLeftOutComesFromTheNamedPreset) {
   const Options options = options_from_toml("preset = \"paper\"\n[descriptor]\nradius = 8\n", "text");

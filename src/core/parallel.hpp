@@ -10,7 +10,6 @@
 #endif
 
 #include <algorithm>
-#include <algorithm>
 #include <cstddef>
 
 namespace igsp {
@@ -28,8 +27,7 @@ void parallel_blocks(std::size_t size, int threads, std::size_t grain, const Bod
   // Plain threads show it the same bodies.
   const std::size_t count = threads == 0 ? std::max(1u, std::thread::hardware_concurrency()) : threads;
   std::vector<std::jthread> team;
-  for (std::size_t i = 0; i < count; ++i)
-    team.emplace_back([&, i] { body(size * i / count, size * (i + 1) / count); });
+  for (std::size_t i = 0; i < count; ++i) team.emplace_back([&, i] { body(size * i / count, size * (i + 1) / count); });
 #else
   // TBB prints a warning when asked for more threads than there are processors.
   const int processors = tbb::info::default_concurrency();

@@ -19,7 +19,8 @@ struct PointPair {
 /// weight, or all on a line.
 std::optional<Transformation> rigid_fit(std::span<const PointPair> pairs);
 
-/// The same with yaw (about z) and translation only, for levelled scans. Empty for fewer than 2 pairs or coincident in xy.
+/// The same with yaw (about z) and translation only, for levelled scans. Empty for fewer than 2 pairs or coincident in
+/// xy.
 std::optional<Transformation> levelled_rigid_fit(std::span<const PointPair> pairs);
 
 /// Chooses between the two by degrees of freedom (6 or 4).

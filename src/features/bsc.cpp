@@ -15,9 +15,9 @@ using namespace bsc;
 
 static_assert(bits == bsc_bits && bits <= 64 * bsc_words);
 
-// A point touches the cells whose centre is within 1.5 u: the 3 x 3 patch around its nearest cell. Weights are tabulated
-// over the position inside the nearest cell, in 1/16 u. Steps are centred on 0 and rounding is symmetric, so a flipped
-// point finds exactly the flipped weights.
+// A point touches the cells whose centre is within 1.5 u: the 3 x 3 patch around its nearest cell. Weights are
+// tabulated over the position inside the nearest cell, in 1/16 u. Steps are centred on 0 and rounding is symmetric, so
+// a flipped point finds exactly the flipped weights.
 constexpr int steps = 16;
 // 9 weights padded to 16: a generic vector, which the compiler lowers to whatever width the machine has.
 using Patch = float __attribute__((vector_size(64)));

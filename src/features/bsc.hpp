@@ -10,7 +10,8 @@ namespace igsp {
 
 /// Binary Shape Context of a support seen in a frame (columns x, y, n): for each of the three coordinate planes the
 /// occupancy of 7 x 7 cells, and for 48 pairs of cells whether their difference in depth and in density stands out
-/// (Dong et al. 2017, as specified in docs/method.md). Depth is signed, so that turning the frame's signs permutes bits.
+/// (Dong et al. 2017, as specified in docs/method.md). Depth is signed, so that turning the frame's signs permutes
+/// bits.
 Descriptor binary_shape_context(const SupportView& support, const Eigen::Matrix3d& frame, double descriptor_radius);
 
 /// Descriptor in the frame with the signs of frame flip 0..3 (bsc_layout.hpp), by permuting bits: no point is touched.

@@ -7,19 +7,21 @@
 // that no table has to be shipped beside the program.
 namespace igsp::bsc {
 
-inline constexpr int side = 7;                // N: cells a side
-inline constexpr int half = side / 2;         // cells run from -half to +half, the keypoint lies in cell 0
-inline constexpr int cells = side * side;     // N^2
-inline constexpr int planes = 3;              // XY (depth z), XZ (depth y), YZ (depth x)
+inline constexpr int side = 7;             // N: cells a side
+inline constexpr int half = side / 2;      // cells run from -half to +half, the keypoint lies in cell 0
+inline constexpr int cells = side * side;  // N^2
+inline constexpr int planes = 3;           // XY (depth z), XZ (depth y), YZ (depth x)
 inline constexpr int orbits = 12;
-inline constexpr int pairs = 4 * orbits;      // compared cell pairs per plane
+inline constexpr int pairs = 4 * orbits;  // compared cell pairs per plane
 inline constexpr int depth_begin = planes * cells;
 inline constexpr int density_begin = depth_begin + planes * pairs;
 inline constexpr int bits = density_begin + planes * pairs;
 
 enum Flip : int { none = 0, flip_i = 1, flip_j = 2, flip_both = 3 };
 
-constexpr int cell_number(int i, int j) { return (j + half) * side + (i + half); }
+constexpr int cell_number(int i, int j) {
+  return (j + half) * side + (i + half);
+}
 constexpr int flipped_cell(int cell, int flip) {
   const int i = cell % side - half, j = cell / side - half;
   return cell_number(flip & flip_i ? -i : i, flip & flip_j ? -j : j);
@@ -58,7 +60,9 @@ constexpr std::array<Pair, pairs> make_pairs() {
 inline constexpr std::array<Pair, pairs> pair_table = make_pairs();
 
 /// Pair k of a plane seen after a flip is pair flipped_pair(k, flip): within an orbit, flips combine like bit masks.
-constexpr int flipped_pair(int pair, int flip) { return (pair & ~3) | ((pair & 3) ^ flip); }
+constexpr int flipped_pair(int pair, int flip) {
+  return (pair & ~3) | ((pair & 3) ^ flip);
+}
 
 constexpr bool pairs_are_distinct() {
   for (int a = 0; a < pairs; ++a) {

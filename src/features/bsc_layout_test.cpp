@@ -33,8 +33,8 @@ TEST(BscLayout, SignsFlipTheCellsOfTheirPlane) {
   constexpr int in_plane[planes][2] = {{0, 1}, {0, 2}, {1, 2}};  // XY, XZ, YZ
   for (const FrameFlip& flip : frame_flips) {
     for (int plane = 0; plane < planes; ++plane) {
-      const int expected = (flip.signs[in_plane[plane][0]] < 0 ? flip_i : none) |
-                           (flip.signs[in_plane[plane][1]] < 0 ? flip_j : none);
+      const int expected =
+          (flip.signs[in_plane[plane][0]] < 0 ? flip_i : none) | (flip.signs[in_plane[plane][1]] < 0 ? flip_j : none);
       EXPECT_EQ(flip.plane_flips[plane], expected) << "plane " << plane;
     }
   }

@@ -50,7 +50,9 @@ inline Eigen::Matrix3d with_signs(const Eigen::Matrix3d& frame, int frame_flip) 
   return frame * Eigen::Vector3d(signs[0], signs[1], signs[2]).asDiagonal();
 }
 
-inline bool bit_of(const Descriptor& descriptor, int bit) { return descriptor[bit / 64] >> (bit % 64) & 1; }
+inline bool bit_of(const Descriptor& descriptor, int bit) {
+  return descriptor[bit / 64] >> (bit % 64) & 1;
+}
 
 inline int differing_bits(const Descriptor& a, const Descriptor& b) {
   int count = 0;

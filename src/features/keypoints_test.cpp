@@ -138,7 +138,9 @@ TEST(Keypoints, APlaneAndALineHaveNone) {
   EXPECT_TRUE(Scene(line, options).keypoints.empty());
 }
 
-TEST(Keypoints, OfNoPointsAreNone) { EXPECT_TRUE(Scene({}, {}).keypoints.empty()); }
+TEST(Keypoints, OfNoPointsAreNone) {
+  EXPECT_TRUE(Scene({}, {}).keypoints.empty());
+}
 
 }  // namespace
 }  // namespace igsp

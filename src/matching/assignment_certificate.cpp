@@ -8,8 +8,8 @@ namespace igsp {
 namespace {
 
 bool all_within(const std::vector<std::int64_t>& potentials, std::size_t size, std::int64_t low, std::int64_t high) {
-  return potentials.size() == size && std::all_of(potentials.begin(), potentials.end(),
-                                                  [&](std::int64_t p) { return low <= p && p <= high; });
+  return potentials.size() == size &&
+         std::all_of(potentials.begin(), potentials.end(), [&](std::int64_t p) { return low <= p && p <= high; });
 }
 
 /// A target or -1 for every source, and no target twice.
@@ -47,8 +47,7 @@ bool certificate_holds(std::size_t sources, std::size_t targets, std::span<const
       ++matched_edges;
     }
   }
-  const std::size_t unmatched =
-      std::count(assignment.target_of_source.begin(), assignment.target_of_source.end(), -1);
+  const std::size_t unmatched = std::count(assignment.target_of_source.begin(), assignment.target_of_source.end(), -1);
   const std::int64_t energy = matched_cost + threshold * static_cast<std::int64_t>(unmatched);
   return matched_edges == sources - unmatched && assignment.matches == matched_edges && assignment.energy == energy &&
          energy == sum(u) + sum(v);

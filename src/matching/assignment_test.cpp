@@ -127,8 +127,8 @@ struct Shape {
 };
 
 TEST(Assignment, EqualsLemonAndKuhnMunkresOnLargerGraphs) {
-  const Shape shapes[] = {{60, 60, 3},  {200, 200, 1}, {200, 200, 8},  {300, 300, 60}, {150, 250, 20},
-                          {250, 150, 9}, {40, 300, 12}, {300, 40, 5}, {80, 80, 1000}, {1, 200, 30}, {200, 1, 1}};
+  const Shape shapes[] = {{60, 60, 3},   {200, 200, 1}, {200, 200, 8},  {300, 300, 60}, {150, 250, 20}, {250, 150, 9},
+                          {40, 300, 12}, {300, 40, 5},  {80, 80, 1000}, {1, 200, 30},   {200, 1, 1}};
   std::uint64_t seed = 0;
   for (const Shape& shape : shapes) {
     for (const std::int64_t units_per_bit : {std::int64_t{1}, assignment_units_per_bit}) {

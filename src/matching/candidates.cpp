@@ -49,7 +49,8 @@ Eigen::Quaternionf frame_rotation(const Eigen::Matrix3d& source_frame, const Eig
 int best_variant(std::span<const Descriptor> variants, const Descriptor& target) {
   int best = 0;
   for (int v = 1; v < static_cast<int>(variants.size()); ++v) {
-    if (feature_distance(variants.subspan(v, 1), target) < feature_distance(variants.subspan(best, 1), target)) best = v;
+    if (feature_distance(variants.subspan(v, 1), target) < feature_distance(variants.subspan(best, 1), target))
+      best = v;
   }
   return best;
 }

@@ -12,8 +12,8 @@ namespace igsp {
 struct Candidate {
   std::uint32_t source;
   std::uint32_t target;
-  float score;                              ///< how far FD stands out in its row and its column, in sigmas
-  Eigen::Quaternionf target_from_source;    ///< from frame to frame, with the sign variant of least FD
+  float score;                            ///< how far FD stands out in its row and its column, in sigmas
+  Eigen::Quaternionf target_from_source;  ///< from frame to frame, with the sign variant of least FD
 };
 
 /// The keypoints of one cloud with everything that matching needs.

@@ -122,11 +122,10 @@ double next_threshold(std::span<const Correspondence> matched, double ed_scale, 
                       double previous, const EnergyOptions& options) {
   if (matched.empty()) return previous;
   const Means mean = means_of(matched, ed_scale);
-  const double threshold =
-      options.threshold_rule == ThresholdRule::paper
-          ? options.p2 * weights.ed * mean.ed + options.p3 * weights.fd * mean.fd
-          : weights.ed * mean.ed_rms * options.released_p_ed +
-                weights.fd * (mean.fd + options.released_p_fd * mean.fd_deviation);
+  const double threshold = options.threshold_rule == ThresholdRule::paper
+                               ? options.p2 * weights.ed * mean.ed + options.p3 * weights.fd * mean.fd
+                               : weights.ed * mean.ed_rms * options.released_p_ed +
+                                     weights.fd * (mean.fd + options.released_p_fd * mean.fd_deviation);
   return std::max(options.min_threshold, threshold);
 }
 

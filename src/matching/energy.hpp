@@ -20,9 +20,9 @@ EnergyWeights energy_weights(int k, double weight_changing_rate);
 
 /// The two keypoint sets as the energy sees them, the source already moved by the current transformation.
 struct KeypointSets {
-  PointView source;                              ///< m positions
-  PointView target;                              ///< n positions
-  std::span<const Descriptor> source_variants;   ///< m x variants, row-major
+  PointView source;                             ///< m positions
+  PointView target;                             ///< n positions
+  std::span<const Descriptor> source_variants;  ///< m x variants, row-major
   int variants = 4;
   std::span<const Descriptor> target_descriptors;  ///< n
 };

@@ -119,8 +119,8 @@ RC_GTEST_PROP(ConsistencyGraph, CountsAndVisitsWhatAgrees, (std::uint64_t seed))
     RC_ASSERT(visited == neighbours);
     RC_ASSERT(graph.degree(c) == static_cast<int>(neighbours.size()));
     for (std::size_t d = 0; d < graph.size(); ++d) {
-      const auto common = std::count_if(neighbours.begin(), neighbours.end(),
-                                        [&](std::size_t e) { return graph.agree(d, e); });
+      const auto common =
+          std::count_if(neighbours.begin(), neighbours.end(), [&](std::size_t e) { return graph.agree(d, e); });
       RC_ASSERT(graph.common_neighbours(c, d) == common);
     }
   }

@@ -21,8 +21,8 @@ class FeatureRows {
       : source_variants_(source_variants), variants_(variants), targets_(targets), level_(level) {
     if (variants == 0 || source_variants.size() % variants != 0) {
       throw InvalidArgument("variants: " + std::to_string(variants) +
-                            " per source, must be at least 1 and divide the " +
-                            std::to_string(source_variants.size()) + " source descriptors");
+                            " per source, must be at least 1 and divide the " + std::to_string(source_variants.size()) +
+                            " source descriptors");
     }
   }
 
@@ -65,7 +65,7 @@ void append_below(std::span<const std::uint16_t> distances, std::uint16_t limit,
   const std::size_t below =
       std::count_if(distances.begin(), distances.end(), [&](std::uint16_t distance) { return distance < limit; });
   if (below == 0) return;
-  pairs.resize(size + below + 1);  // one to spare, since pairs that fail are written too
+  pairs.resize(size + below + 1);                       // one to spare, since pairs that fail are written too
   for (std::size_t j = 0; j < distances.size(); ++j) {  // no branch: which pairs pass cannot be predicted
     pairs[size] = {static_cast<std::uint32_t>(source), static_cast<std::uint32_t>(j), distances[j]};
     size += distances[j] < limit;

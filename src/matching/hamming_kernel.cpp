@@ -47,7 +47,9 @@ IGSP_INLINE Piece count_in_nibbles(Piece x) {
 }
 
 /// Sums of neighbouring groups of four.
-IGSP_INLINE Piece nibbles_to_bytes(Piece x) { return (x & 0x0f0f) + ((x >> 4) & 0x0f0f); }
+IGSP_INLINE Piece nibbles_to_bytes(Piece x) {
+  return (x & 0x0f0f) + ((x >> 4) & 0x0f0f);
+}
 
 /// Bits set in all 28 pieces, without a popcount instruction: carry-save adders reduce them to five words of weight 1,
 /// 2, 4, 8, 16. The order keeps few values alive at a time.
@@ -132,10 +134,14 @@ IGSP_INLINE std::uint16_t least_of(std::span<const Descriptor> variants, const D
   return static_cast<std::uint16_t>(least);
 }
 
-void row_baseline(const Row& row) { compute_row<CountByAdders>(row); }
+void row_baseline(const Row& row) {
+  compute_row<CountByAdders>(row);
+}
 
 #ifdef IGSP_X86_KERNELS
-__attribute__((target("avx2"))) void row_avx2(const Row& row) { compute_row<CountByAdders>(row); }
+__attribute__((target("avx2"))) void row_avx2(const Row& row) {
+  compute_row<CountByAdders>(row);
+}
 
 __attribute__((target("avx512f,avx512bw,avx512vl,prefer-vector-width=512"))) void row_avx512(const Row& row) {
   compute_row<CountByAdders>(row);
@@ -152,8 +158,8 @@ __attribute__((target("popcnt"))) std::uint16_t least_with_popcnt(std::span<cons
 }
 
 bool runs(SimdLevel level) {
-  const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-                      __builtin_cpu_supports("avx512vl");
+  const bool avx512 =
+      __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
   switch (level) {
     case SimdLevel::baseline:
       return true;
@@ -167,7 +173,9 @@ bool runs(SimdLevel level) {
   return false;
 }
 #else
-bool runs(SimdLevel level) { return level == SimdLevel::baseline; }
+bool runs(SimdLevel level) {
+  return level == SimdLevel::baseline;
+}
 #endif
 
 }  // namespace
@@ -188,14 +196,15 @@ std::string_view to_string(SimdLevel level) {
 
 std::vector<SimdLevel> available_simd_levels() {
   std::vector<SimdLevel> levels;
-  for (const SimdLevel level :
-       {SimdLevel::baseline, SimdLevel::avx2, SimdLevel::avx512, SimdLevel::avx512_bitalg}) {
+  for (const SimdLevel level : {SimdLevel::baseline, SimdLevel::avx2, SimdLevel::avx512, SimdLevel::avx512_bitalg}) {
     if (runs(level)) levels.push_back(level);
   }
   return levels;
 }
 
-SimdLevel best_simd_level() { return available_simd_levels().back(); }
+SimdLevel best_simd_level() {
+  return available_simd_levels().back();
+}
 
 TargetBlocks::TargetBlocks(std::span<const Descriptor> targets)
     : size_(targets.size()), blocks_((targets.size() + lanes - 1) / lanes) {

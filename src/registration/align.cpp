@@ -39,9 +39,9 @@ CloudSummary summary_of(const Features& features) {
 
 void check_compatible(const Features& source, const Features& target) {
   if (source.voxel_size == target.voxel_size) return;
-  throw InvalidArgument(fmt::format(
-      "source and target features were extracted with voxel_size {} and {}; both must be the same", source.voxel_size,
-      target.voxel_size));
+  throw InvalidArgument(
+      fmt::format("source and target features were extracted with voxel_size {} and {}; both must be the same",
+                  source.voxel_size, target.voxel_size));
 }
 
 StageTimings sum_of(StageTimings a, const StageTimings& b) {
@@ -53,11 +53,16 @@ StageTimings sum_of(StageTimings a, const StageTimings& b) {
 
 std::string_view to_string(Termination termination) {
   switch (termination) {
-    case Termination::converged: return "converged";
-    case Termination::max_iterations: return "max_iterations";
-    case Termination::too_few_keypoints: return "too_few_keypoints";
-    case Termination::too_few_matches: return "too_few_matches";
-    case Termination::degenerate_matches: return "degenerate_matches";
+    case Termination::converged:
+      return "converged";
+    case Termination::max_iterations:
+      return "max_iterations";
+    case Termination::too_few_keypoints:
+      return "too_few_keypoints";
+    case Termination::too_few_matches:
+      return "too_few_matches";
+    case Termination::degenerate_matches:
+      return "degenerate_matches";
   }
   return "unknown";
 }
@@ -91,10 +96,9 @@ Result align_features(const Features& source, const Features& target, const Tran
   clock.start("common frame");
   const PreparedCloud prepared_source(source), prepared_target(target);
   CommonFrame frame(prepared_source, prepared_target, options.descriptor.radius * target.voxel_size, options.threads);
-  const SearchOutcome outcome =
-      initial                             ? refine_initial(frame, to_local(*initial, source, target), options, clock)
-      : options.search == Search::direct ? direct_search(frame, options, clock)
-                                          : hypotheses_search(frame, options, clock);
+  const SearchOutcome outcome = initial ? refine_initial(frame, to_local(*initial, source, target), options, clock)
+                                : options.search == Search::direct ? direct_search(frame, options, clock)
+                                                                   : hypotheses_search(frame, options, clock);
   clock.start("verdict");
   judge(frame, outcome, result);
   clock.finish();
@@ -141,8 +145,7 @@ Result align(PointView source, PointView target, const Transformation& initial, 
   return align_points(source, target, &initial, options, progress);
 }
 
-Result align(const Features& source, const Features& target, const Options& options,
-             const ProgressCallback& progress) {
+Result align(const Features& source, const Features& target, const Options& options, const ProgressCallback& progress) {
   return align_features(source, target, nullptr, options, progress);
 }
 

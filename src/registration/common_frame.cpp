@@ -11,8 +11,8 @@ namespace igsp {
 namespace {
 
 constexpr double reuse_angle_rad = 2.0 * M_PI / 180.0;
-constexpr double agreeing_distance = 2.5;                    // voxels
-constexpr std::array<double, 2> mode_radii{4.0, 8.0};        // voxels
+constexpr double agreeing_distance = 2.5;                        // voxels
+constexpr std::array<double, 2> mode_radii{4.0, 8.0};            // voxels
 constexpr std::array<double, 4> fit_scales{4.0, 3.0, 2.0, 2.0};  // voxels
 
 // The translation with the most others within `radius`, averaged over those.

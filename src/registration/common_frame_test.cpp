@@ -87,9 +87,9 @@ TEST(MutualMatches, AreNearestToEachOther) {
   const auto source = frame.source_descriptors(scene.truth.linear());
   const auto& target = frame.target_descriptors();
   const auto nearest = [](const Descriptor& one, const std::vector<Descriptor>& all) {
-    return std::min_element(all.begin(), all.end(), [&](const auto& a, const auto& b) {
-             return distance(one, a) < distance(one, b);
-           }) - all.begin();
+    return std::min_element(all.begin(), all.end(),
+                            [&](const auto& a, const auto& b) { return distance(one, a) < distance(one, b); }) -
+           all.begin();
   };
   std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> expected;
   for (std::size_t i = 0; i < source.size(); ++i) {

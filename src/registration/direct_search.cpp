@@ -9,14 +9,19 @@ SearchOutcome direct_search(const CommonFrame& frame, const Options& options, St
   clock.start("loop");
   const int variants = options.degrees_of_freedom == 4 ? 2 : 4;
   const std::vector<Descriptor> source_variants = sign_variants(frame.source().features.descriptors, variants);
-  const LoopInput input{frame.source().keypoints, frame.target().keypoints, source_variants, variants,
-                        frame.target().features.descriptors, frame.target().features.voxel_size};
+  const LoopInput input{frame.source().keypoints,
+                        frame.target().keypoints,
+                        source_variants,
+                        variants,
+                        frame.target().features.descriptors,
+                        frame.target().features.voxel_size};
   LoopSchedule schedule;
   schedule.max_iterations = options.convergence.max_iterations;
   const double share = 1.0 / schedule.max_iterations;
   LoopOutcome loop = igsp_loop(input, Transformation::Identity(), schedule, options,
                                [&](int iteration) { clock.report(share * iteration); });
-  SearchOutcome outcome{loop.termination, loop.has_estimate, loop.target_from_source, std::move(loop.iterations), {}, {}};
+  SearchOutcome outcome{
+      loop.termination, loop.has_estimate, loop.target_from_source, std::move(loop.iterations), {}, {}};
   if (outcome.has_estimate) {
     FineSurfaces surfaces(frame.source().features, frame.target().features);
     outcome.precision = precision_at(surfaces, outcome.target_from_source);

@@ -39,8 +39,7 @@ std::vector<Hypothesis> propose(CommonFrame& frame, const Options& options) {
                                              {target.keypoints, target.features.frames, target.features.descriptors},
                                              variants, h.candidates_per_keypoint, h.max_candidates, options.threads);
   const ConsistencyOptions consistency{h.length_tolerance * v, h.min_length * v, h.max_frame_angle_rad};
-  const auto graph =
-      consistency_graph(candidates, source.keypoints, target.keypoints, consistency, options.threads);
+  const auto graph = consistency_graph(candidates, source.keypoints, target.keypoints, consistency, options.threads);
   return propose_hypotheses(candidates, graph, source.keypoints, target.keypoints, v, options);
 }
 
@@ -63,8 +62,8 @@ std::vector<Rematch> distinct(std::vector<Rematch> sorted, double voxel_size, in
   return kept;
 }
 
-// Matches every proposal again in its common frame and keeps those with most agreeing matches. After a clear winner only
-// proposals that as many candidates support are looked into: they would be the other poses of a symmetric scene.
+// Matches every proposal again in its common frame and keeps those with most agreeing matches. After a clear winner
+// only proposals that as many candidates support are looked into: they would be the other poses of a symmetric scene.
 std::vector<Rematch> screen(CommonFrame& frame, std::span<const Hypothesis> hypotheses, const Options& options,
                             StageClock& clock) {
   std::vector<Rematch> screened;
@@ -83,16 +82,17 @@ std::vector<Rematch> screen(CommonFrame& frame, std::span<const Hypothesis> hypo
 
 LoopOutcome hybrid_loop(CommonFrame& frame, const Transformation& initial, int iterations, const Options& options,
                         const std::function<void(int)>& tick = {}) {
-  const LoopInput input{frame.source().keypoints,   frame.target().keypoints,
-                        frame.source_descriptors(initial.linear()), 1,
-                        frame.target_descriptors(), frame.target().features.voxel_size};
+  const LoopInput input{
+      frame.source().keypoints,   frame.target().keypoints,          frame.source_descriptors(initial.linear()), 1,
+      frame.target_descriptors(), frame.target().features.voxel_size};
   return igsp_loop(input, initial, {first_hybrid_k, iterations, hybrid_fit_scale, common_frame_bounds}, options, tick);
 }
 
 // A short refinement on the voxel centroids, before hypotheses are compared.
 Transformation settle(Surface& source, Surface& target, const Transformation& initial, double voxel_size,
                       const Options& options) {
-  return refine_point_to_plane(source, target, initial, {coarse_points, coarse_points, coarse_radii, 0, voxel_size, options.degrees_of_freedom});
+  return refine_point_to_plane(source, target, initial,
+                               {coarse_points, coarse_points, coarse_radii, 0, voxel_size, options.degrees_of_freedom});
 }
 
 // Down to the noise of the scanner, on the finer voxels.
@@ -100,9 +100,10 @@ void refine(const CommonFrame& frame, const Options& options, StageClock& clock,
   clock.start("refinement");
   FineSurfaces surfaces(frame.source().features, frame.target().features);
   if (options.refinement.enabled) {
-    outcome.target_from_source = refine_point_to_plane(
-        surfaces.source, surfaces.target, outcome.target_from_source,
-        {early_fine_points, fine_points, fine_radii, max_last_steps, frame.target().features.voxel_size, options.degrees_of_freedom});
+    outcome.target_from_source =
+        refine_point_to_plane(surfaces.source, surfaces.target, outcome.target_from_source,
+                              {early_fine_points, fine_points, fine_radii, max_last_steps,
+                               frame.target().features.voxel_size, options.degrees_of_freedom});
   }
   outcome.precision = precision_at(surfaces, outcome.target_from_source);
 }

@@ -116,7 +116,9 @@ TEST(Hypotheses, OfLevelledScansAreLevel) {
   for (const Hypothesis& h : hypotheses) EXPECT_EQ(h.target_from_source.linear().col(2), Eigen::Vector3d::UnitZ());
 }
 
-TEST(Hypotheses, OfNoCandidatesAreNone) { EXPECT_TRUE(Scene{}.propose().empty()); }
+TEST(Hypotheses, OfNoCandidatesAreNone) {
+  EXPECT_TRUE(Scene{}.propose().empty());
+}
 
 TEST(SamePose, AllowsFiveDegreesAndFourVoxels) {
   const auto moved_by = [](double degrees, double voxels) {

@@ -63,7 +63,7 @@ LoopOutcome igsp_loop(const LoopInput& input, const Transformation& initial, con
   for (int k = schedule.first_k; k < schedule.first_k + schedule.max_iterations; ++k) {
     if (tick) tick(k - schedule.first_k);
     const auto begin = std::chrono::steady_clock::now();
-    const EnergyWeights weights = energy_weights(k, options.energy.weight_changing_rate);  // Eq. 7
+    const EnergyWeights weights = energy_weights(k, options.energy.weight_changing_rate);              // Eq. 7
     threshold = threshold_at(k, weights, keypoints, matched, ed_scale, threshold, schedule, options);  // Eq. 11
     const auto edges = candidate_edges(keypoints, ed_scale, weights, threshold, options.threads);      // Eq. 2-5
     const Assignment assignment =

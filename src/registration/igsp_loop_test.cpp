@@ -183,8 +183,8 @@ TEST(IgspLoop, ConvergesOnlyWhenBothStepsAreSmall) {
   for (const Eigen::Vector3d& point : still.source) centroid += point / static_cast<double>(still.source.size());
   const Eigen::Translation3d there(centroid);
   const Eigen::AngleAxisd turn(1.0, Eigen::Vector3d(1, 2, 3).normalized());
-  for (const Transformation& truth : {Transformation(Eigen::Translation3d(3, 4, 5)),
-                                      Transformation(there * turn * there.inverse())}) {
+  for (const Transformation& truth :
+       {Transformation(Eigen::Translation3d(3, 4, 5)), Transformation(there * turn * there.inverse())}) {
     const LoopOutcome outcome = run(moved_copy(13, 200, truth));
     EXPECT_EQ(outcome.termination, Termination::converged);
     EXPECT_EQ(outcome.iterations.size(), 2u);

@@ -32,9 +32,9 @@ class Surface {
 };
 
 struct PointToPlaneOptions {
-  std::size_t early_points = 0;   ///< of the source, evenly strided, until the last radius
-  std::size_t max_points = 0;     ///< the same at the last radius
-  std::span<const double> radii;  ///< one Gauss-Newton step each: search radius [voxels]
+  std::size_t early_points = 0;    ///< of the source, evenly strided, until the last radius
+  std::size_t max_points = 0;      ///< the same at the last radius
+  std::span<const double> radii;   ///< one Gauss-Newton step each: search radius [voxels]
   std::size_t max_last_steps = 0;  ///< further steps at the last radius, until they are small
   double voxel_size = 0;
   int degrees_of_freedom = 6;
@@ -44,10 +44,11 @@ struct PointToPlaneOptions {
 /// whose normal agrees, and minimises the distances along the sum of both normals (Rusinkiewicz 2019, symmetric ICP)
 /// under the Geman-McClure loss at half the radius. Ends early where a step finds too few pairs or a free direction.
 /// Returns target_from_source.
-Transformation refine_point_to_plane(Surface& source, Surface& target, const Transformation& initial, const PointToPlaneOptions& options);
+Transformation refine_point_to_plane(Surface& source, Surface& target, const Transformation& initial,
+                                     const PointToPlaneOptions& options);
 
-/// The normal equations of one step at a pose: sum of J^T w J over pairs, and the variance of their residuals. Rotations
-/// about `centre` (target frame) first, then translations.
+/// The normal equations of one step at a pose: sum of J^T w J over pairs, and the variance of their residuals.
+/// Rotations about `centre` (target frame) first, then translations.
 struct Linearisation {
   Eigen::Vector3d centre;
   Eigen::Matrix<double, 6, 6> hessian;

@@ -22,8 +22,8 @@ struct FineSurfaces {
 Precision precision_at(FineSurfaces& surfaces, const Transformation& target_from_source);
 
 /// Motions of 8 voxels after which the surfaces touch as much as before: what the surfaces do not fix. Candidates are
-/// the weakest eigenvectors of the normal equations at the pose. Called with one cloud twice and the identity, these are
-/// the motions that slide it along itself. In the coordinates of `fixed`.
+/// the weakest eigenvectors of the normal equations at the pose. Called with one cloud twice and the identity, these
+/// are the motions that slide it along itself. In the coordinates of `fixed`.
 std::vector<FreeDirection> free_directions(const PreparedCloud& moved, const PreparedCloud& fixed,
                                            const Transformation& fixed_from_moved);
 

@@ -5,7 +5,8 @@
 
 namespace igsp {
 
-/// A cloud's features with the search structure and the arrays that the registration stages share. Refers to `features`.
+/// A cloud's features with the search structure and the arrays that the registration stages share. Refers to
+/// `features`.
 struct PreparedCloud {
   explicit PreparedCloud(const Features& cloud_features)
       : features(cloud_features), grid(cloud_features.points, 3.0 * cloud_features.voxel_size) {

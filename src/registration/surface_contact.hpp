@@ -6,12 +6,12 @@ namespace igsp {
 
 /// How the surface of `moved` lies on the surface of `fixed`.
 struct SurfaceContact {
-  double share = 0.5;    ///< of the places where the two meet, the share where they touch, weighted by curvature; (0, 1)
-  double overlap = 0;    ///< share of all voxels of `moved` that lie on `fixed`, [0, 1]
+  double share = 0.5;  ///< of the places where the two meet, the share where they touch, weighted by curvature; (0, 1)
+  double overlap = 0;  ///< share of all voxels of `moved` that lie on `fixed`, [0, 1]
 };
 
-/// Places beyond the rim of `fixed` do not count, so the overlap does not matter for `share`; surfaces that merely cross
-/// give about 1/4. Weights by surface variation, since flat ground touches under any pose that keeps it level.
+/// Places beyond the rim of `fixed` do not count, so the overlap does not matter for `share`; surfaces that merely
+/// cross give about 1/4. Weights by surface variation, since flat ground touches under any pose that keeps it level.
 SurfaceContact surface_contact(const PreparedCloud& moved, const PreparedCloud& fixed,
                                const Transformation& fixed_from_moved);
 

@@ -16,10 +16,13 @@ namespace {
 constexpr double even_quality = 0.65;  // Q at which a pose is as likely right as wrong
 constexpr double steepness = 2.0;      // decades of the odds per unit of Q
 
-// Beyond this, more quality says nothing more about which of two poses is right: contact of 99.9 against 99.6 % is noise.
+// Beyond this, more quality says nothing more about which of two poses is right: contact of 99.9 against 99.6 % is
+// noise.
 constexpr double certain_quality = 1.5;
 
-double odds(double quality) { return std::pow(10.0, steepness * quality); }
+double odds(double quality) {
+  return std::pow(10.0, steepness * quality);
+}
 
 std::string free_motions(const std::vector<FreeDirection>& directions) {
   std::string text;
@@ -32,8 +35,10 @@ std::string why_no_estimate(const Result& result) {
     case Termination::too_few_keypoints:
       return fmt::format("too few keypoints: {} in the source, {} in the target; at least 3 are needed",
                          result.source.keypoints, result.target.keypoints);
-    case Termination::degenerate_matches: return "the correspondences lie on a line and fix no rotation";
-    default: return "no three correspondences agree on a transformation";
+    case Termination::degenerate_matches:
+      return "the correspondences lie on a line and fix no rotation";
+    default:
+      return "no three correspondences agree on a transformation";
   }
 }
 
@@ -46,7 +51,8 @@ std::string in_words(const Result& result) {
   return text;
 }
 
-// On itself the target lies as well as it can, so a motion that it allows shows even where the estimate is poor or none.
+// On itself the target lies as well as it can, so a motion that it allows shows even where the estimate is poor or
+// none.
 void name_what_the_target_leaves_free(const CommonFrame& frame, Result& result) {
   result.precision.free_directions = free_directions(frame.target(), frame.target(), Transformation::Identity());
   if (result.precision.free_directions.empty()) return;

@@ -74,8 +74,7 @@ BoundingVolumeHierarchy::BoundingVolumeHierarchy(const Primitives& primitives) {
   for (const Item& item : items) primitives_.push_back(primitives[item.primitive]);
 }
 
-void BoundingVolumeHierarchy::build(std::vector<Item>& items, std::uint32_t begin, std::uint32_t end,
-                                    int depth) {
+void BoundingVolumeHierarchy::build(std::vector<Item>& items, std::uint32_t begin, std::uint32_t end, int depth) {
   const std::size_t self = nodes_.size();
   nodes_.emplace_back();
   for (std::uint32_t i = begin; i < end; ++i) nodes_[self].box.extend(items[i].box);

@@ -16,10 +16,17 @@ Primitives random_primitives(int count, Random& random) {
     const Vector3d p = 3.0 * random.normal_vector(), u = 0.5 * random.normal_vector(), v = 0.5 * random.normal_vector();
     const Vector3d radii = u.cwiseAbs() + Vector3d::Constant(0.01);
     switch (random.integer(0, 3)) {
-      case 0: primitives.push_back(Triangle{p, u, v}); break;
-      case 1: primitives.push_back(Parallelogram{p, u, v}); break;
-      case 2: primitives.push_back(make_ellipsoid(p, random.rotation(), radii)); break;
-      default: primitives.push_back(make_frustum(p, p + u, 0.3, 0.1));
+      case 0:
+        primitives.push_back(Triangle{p, u, v});
+        break;
+      case 1:
+        primitives.push_back(Parallelogram{p, u, v});
+        break;
+      case 2:
+        primitives.push_back(make_ellipsoid(p, random.rotation(), radii));
+        break;
+      default:
+        primitives.push_back(make_frustum(p, p + u, 0.3, 0.1));
     }
   }
   return primitives;

@@ -8,7 +8,9 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-Vector3d middle(const Opening& o, double y) { return {0.5 * (o.begin + o.end), y, 0.5 * (o.bottom + o.top)}; }
+Vector3d middle(const Opening& o, double y) {
+  return {0.5 * (o.begin + o.end), y, 0.5 * (o.bottom + o.top)};
+}
 
 void add_balcony(Primitives& surfaces, const Isometry3d& at, const Opening& opening) {
   const double left = opening.begin - 0.4, right = opening.end + 0.4, out = -1.2;
@@ -100,8 +102,7 @@ void add_wall(Primitives& surfaces, const Isometry3d& at, double length, double 
 
 void add_window(Primitives& surfaces, const Isometry3d& at, const Opening& opening, double recess, int bars) {
   const double width = opening.end - opening.begin, height = opening.top - opening.bottom, frame = 0.07;
-  surfaces.push_back(
-      make_parallelogram(at, {opening.begin, recess, opening.bottom}, {width, 0, 0}, {0, 0, height}));
+  surfaces.push_back(make_parallelogram(at, {opening.begin, recess, opening.bottom}, {width, 0, 0}, {0, 0, height}));
   const Vector3d centre = middle(opening, recess - 0.03);
   for (const double side : {-0.5, 0.5}) {
     surfaces.push_back(make_box(at, centre + Vector3d{side * (width - frame), 0, 0}, {frame, 0.06, height}));

@@ -89,8 +89,12 @@ double crossing(const Frustum& f, const Ray& ray) {
   return nearest;
 }
 
-Vector3d normal(const Triangle& triangle, const Vector3d&) { return triangle.u.cross(triangle.v).normalized(); }
-Vector3d normal(const Parallelogram& patch, const Vector3d&) { return patch.u.cross(patch.v).normalized(); }
+Vector3d normal(const Triangle& triangle, const Vector3d&) {
+  return triangle.u.cross(triangle.v).normalized();
+}
+Vector3d normal(const Parallelogram& patch, const Vector3d&) {
+  return patch.u.cross(patch.v).normalized();
+}
 
 Vector3d normal(const Box& box, const Vector3d& point) {
   int face = 0;
@@ -117,7 +121,9 @@ Eigen::AlignedBox3d patch_bounds(const Patch& patch) {
   return box.extend(patch.corner + patch.u).extend(patch.corner + patch.v);
 }
 
-Eigen::AlignedBox3d box_of(const Triangle& triangle) { return patch_bounds(triangle); }
+Eigen::AlignedBox3d box_of(const Triangle& triangle) {
+  return patch_bounds(triangle);
+}
 Eigen::AlignedBox3d box_of(const Parallelogram& patch) {
   return patch_bounds(patch).extend(patch.corner + patch.u + patch.v);
 }

@@ -30,7 +30,7 @@ TEST(Primitives, RayMeetsKnownSurfaces) {
   EXPECT_DOUBLE_EQ(first_crossing(Parallelogram{{-1, -1, 1}, {2, 0, 0}, {0, 2, 0}}, down), 4.0);
   EXPECT_DOUBLE_EQ(first_crossing(make_box(at, {0, 0, 1}, {2, 4, 6}), down), 1.0);
   EXPECT_DOUBLE_EQ(first_crossing(make_ellipsoid({0.1, 0.2, 0}, Eigen::Matrix3d::Identity(), {1, 2, 3}), down), 2.0);
-  EXPECT_DOUBLE_EQ(first_crossing(make_frustum({0, 0, 0}, {0, 0, 2}, 1.0, 0.5), down), 3.0);    // cap
+  EXPECT_DOUBLE_EQ(first_crossing(make_frustum({0, 0, 0}, {0, 0, 2}, 1.0, 0.5), down), 3.0);       // cap
   EXPECT_DOUBLE_EQ(first_crossing(make_frustum({-9, 0.2, 0}, {9, 0.2, 0}, 1.0, 1.0), down), 4.0);  // side
 }
 

@@ -21,7 +21,7 @@ enum class Sensor {
 struct Scene {
   BoundingVolumeHierarchy surfaces;
   Sensor sensor = Sensor::terrestrial_scanner;
-  double noise = 0.005;           ///< standard deviation along the ray
+  double noise = 0.005;  ///< standard deviation along the ray
   double max_range = 80.0;
   double min_clearance = 0.6;     ///< nothing stands nearer to a station
   double station_distance = 5.0;  ///< between neighbouring stations

@@ -17,8 +17,8 @@ using simulation::overlap_of;
 
 constexpr const char* offered[] = {"park", "indoor", "object"};
 constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-constexpr const char* ambiguous[] = {"plane",       "sphere",              "cylinder", "corridor",
-                                     "square_room", "repetitive_corridor", "noise"};
+constexpr const char* ambiguous[] = {"plane", "sphere", "cylinder", "corridor", "square_room", "repetitive_corridor",
+                                     "noise"};
 
 SimulationOptions small(std::uint64_t seed = 7) {
   SimulationOptions options;

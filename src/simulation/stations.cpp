@@ -125,8 +125,8 @@ std::vector<Transformation> place_scanners(const Scene& scene, int count, double
 std::vector<Transformation> place_cameras(const Scene& scene, int count, double distance, Random& random) {
   const double from_origin = camera_distance * scene.radius;
   if (distance > 2.0 * from_origin) {
-    throw InvalidArgument(fmt::format("station_distance {} m is out of range (0, {}] for this scene", distance,
-                                      2.0 * from_origin));
+    throw InvalidArgument(
+        fmt::format("station_distance {} m is out of range (0, {}] for this scene", distance, 2.0 * from_origin));
   }
   const double step = 2.0 * std::asin(distance / (2.0 * from_origin));
   Vector3d direction = random.direction();

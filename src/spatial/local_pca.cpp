@@ -101,10 +101,10 @@ LocalPca local_pca(const PointGrid& grid, double radius, int threads, const std:
             grid.origin + grid.cell_size * (Eigen::Vector3f(cx, cy, cz) + Eigen::Vector3f::Constant(0.5f));
         around.gather(grid, centre, reach);
         for (std::uint32_t i = begin; i < end; ++i) {
-          analyse(sphere_moments(around.x.data(), around.y.data(), around.z.data(), around.x.size(),
-                                 grid.x[i] - centre.x(), grid.y[i] - centre.y(), grid.z[i] - centre.z(),
-                                 squared_radius),
-                  grid.index[i], pca);
+          analyse(
+              sphere_moments(around.x.data(), around.y.data(), around.z.data(), around.x.size(), grid.x[i] - centre.x(),
+                             grid.y[i] - centre.y(), grid.z[i] - centre.z(), squared_radius),
+              grid.index[i], pca);
         }
       }
     }

@@ -9,11 +9,11 @@ namespace igsp {
 
 /// Principal component analysis of every point's sphere (the point itself included), in the order of the input points.
 struct LocalPca {
-  std::vector<float> curvature;             ///< surface variation l3 / (l1 + l2 + l3), 0 where the sum is 0
-  std::vector<float> ratio21;               ///< l2 / l1, 0 where l1 is 0
-  std::vector<float> ratio32;               ///< l3 / l2, 0 where l2 is 0
-  std::vector<std::uint32_t> neighbours;    ///< points in the sphere
-  std::vector<Eigen::Vector3f> normals;     ///< eigenvector of l3, unit, sign arbitrary
+  std::vector<float> curvature;           ///< surface variation l3 / (l1 + l2 + l3), 0 where the sum is 0
+  std::vector<float> ratio21;             ///< l2 / l1, 0 where l1 is 0
+  std::vector<float> ratio32;             ///< l3 / l2, 0 where l2 is 0
+  std::vector<std::uint32_t> neighbours;  ///< points in the sphere
+  std::vector<Eigen::Vector3f> normals;   ///< eigenvector of l3, unit, sign arbitrary
 };
 
 /// Cost is shared among the points of a cell, so `grid` should have cells of about half the radius.

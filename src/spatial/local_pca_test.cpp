@@ -173,7 +173,9 @@ TEST(LocalNormal, IsThatOfTheSphereAroundAnyPlace) {
   EXPECT_NEAR(local_normal(grid, Eigen::Vector3f(100, 100, 100), 0.8).norm(), 1, 1e-6);
 }
 
-TEST(LocalPca, OfNoPointsIsEmpty) { EXPECT_TRUE(pca_of({}, 1.0).curvature.empty()); }
+TEST(LocalPca, OfNoPointsIsEmpty) {
+  EXPECT_TRUE(pca_of({}, 1.0).curvature.empty());
+}
 
 }  // namespace
 }  // namespace igsp

@@ -25,10 +25,14 @@ Points random_cloud(Random& random) {
 
 Eigen::Vector3f random_query(Random& random, const Points& points) {
   switch (random.integer(0, 4)) {
-    case 0: return points[random.bits() % points.size()].cast<float>();
-    case 1: return random.in_cube(100).cast<float>();                               // mostly far outside
-    case 2: return (random.in_cube(6) * 4).array().round().cast<float>() * 0.25f;  // equally near to many of a lattice
-    default: return random.in_cube(7).cast<float>();
+    case 0:
+      return points[random.bits() % points.size()].cast<float>();
+    case 1:
+      return random.in_cube(100).cast<float>();  // mostly far outside
+    case 2:
+      return (random.in_cube(6) * 4).array().round().cast<float>() * 0.25f;  // equally near to many of a lattice
+    default:
+      return random.in_cube(7).cast<float>();
   }
 }
 

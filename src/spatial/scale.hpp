@@ -18,9 +18,9 @@ Bounds bounds_of(PointView cloud, std::string_view name);
 /// exactly with the cloud: a pair in survey coordinates gives the same differences, hence the same result.
 Eigen::Vector3d centre_of(const Bounds& bounds);
 
-/// One voxel size for both clouds: the geometric mean of their voxel counts comes to options.target_points, yet no cloud
-/// is cut finer than its own spacing (at least 10 points to 6 voxels, about). Returns options.voxel_size if it is set.
-/// Scales with the unit of length. Throws InvalidArgument when all points of both clouds coincide.
+/// One voxel size for both clouds: the geometric mean of their voxel counts comes to options.target_points, yet no
+/// cloud is cut finer than its own spacing (at least 10 points to 6 voxels, about). Returns options.voxel_size if it is
+/// set. Scales with the unit of length. Throws InvalidArgument when all points of both clouds coincide.
 double choose_voxel_size(PointView source, PointView target, const ScaleOptions& options);
 
 }  // namespace igsp

@@ -51,9 +51,8 @@ Points plain_centroids(const Case& c) {
 }
 
 bool near(const Points& a, const Points& b, double tolerance) {
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [&](const auto& p, const auto& q) {
-           return (p - q).norm() <= tolerance;
-         });
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(),
+                                            [&](const auto& p, const auto& q) { return (p - q).norm() <= tolerance; });
 }
 
 RC_GTEST_PROP(VoxelFilter, GivesTheCentroidOfEveryVoxelInOrder, (std::uint64_t seed)) {

@@ -1,0 +1,225 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <iostream>
+#include <optional>
+
+#include "align/answer.hpp"
+#include "files/cloud_input.hpp"
+#include "files/foreign_formats.hpp"
+#include "files/output_file.hpp"
+#include "igsp/align.hpp"
+#include "igsp/errors.hpp"
+#include "igsp/io.hpp"
+#include "report/json.hpp"
+#include "report/page.hpp"
+#include "shell/commands.hpp"
+#include "shell/exit_codes.hpp"
+#include "shell/help_text.hpp"
+#include "shell/interrupt.hpp"
+#include "shell/option_flags.hpp"
+#include "shell/progress_bar.hpp"
+
+namespace igsp::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct AlignSettings {
+  fs::path source, target;
+  fs::path aligned, transformation, report, html;  // empty: not wanted
+  fs::path initial;                                // empty: no guess
+  std::int64_t max_points = 20'000'000;
+  bool force = false, quiet = false, verbose = false;
+  std::shared_ptr<OptionFlags> option_flags;
+};
+
+// Of all threads.
+double cpu_now_s() {
+  timespec cpu{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+  return static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec);
+}
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// A survey format is written only from a source of the same format: it keeps what belongs to the points.
+void check_output_format(const AlignSettings& settings) {
+  if (moves_foreign(settings.source, settings.aligned)) return;
+  if (reads_foreign(settings.aligned)) {
+    throw InvalidArgument(fmt::format("-o {}: {} is written only from a SOURCE of the same format, not from {}",
+                                      settings.aligned.string(), settings.aligned.extension().string(),
+                                      settings.source.string()));
+  }
+  check_not_foreign(settings.aligned);
+  format_of(settings.aligned);
+}
+
+// Everything that can be known to fail does so before the long run.
+void check_outputs(const AlignSettings& settings) {
+  const std::vector<std::pair<std::string_view, fs::path>> files = {{"SOURCE", settings.source},
+                                                                    {"TARGET", settings.target},
+                                                                    {"--initial", settings.initial},
+                                                                    {"-o", settings.aligned},
+                                                                    {"--transform", settings.transformation},
+                                                                    {"--report", settings.report},
+                                                                    {"--html", settings.html}};
+  for (std::size_t i = 3; i < files.size(); ++i) {  // after the inputs
+    const auto& [name, path] = files[i];
+    if (path.empty()) continue;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (files[j].second.empty() || !same_file(path, files[j].second)) continue;
+      throw InvalidArgument(fmt::format("{} and {} are the same file, {}", name, files[j].first, path.string()));
+    }
+    check_writable(path);
+  }
+  if (!settings.aligned.empty()) check_output_format(settings);
+}
+
+std::vector<std::string> warnings_about(const CloudInput& source, const CloudInput& target) {
+  std::vector<std::string> warnings;
+  for (const CloudInput* cloud : {&source, &target}) {
+    if (cloud->dropped == 0) continue;
+    warnings.push_back(fmt::format("{}: dropped {} of {} points with a coordinate that is not finite",
+                                   cloud->path.string(), cloud->dropped, cloud->dropped + cloud->total));
+  }
+  constexpr double suspicious = 100.0;
+  const double power = std::log10(source.bounds.diagonal() / target.bounds.diagonal());
+  if (std::abs(power) >= std::log10(suspicious)) {
+    warnings.push_back(
+        fmt::format("clouds in different units? Extents differ by a factor of about {:g}: source {:.4g}, target {:.4g}",
+                    std::pow(10.0, std::round(std::abs(power))), source.bounds.diagonal(), target.bounds.diagonal()));
+  }
+  return warnings;
+}
+
+// A cloud that was too large to keep whole is replaced by the centroids of a voxel filter four times finer than the
+// method's own, read from the file in chunks. The thinned clouds only tell how fine; the method chooses its voxel size
+// from the centroids.
+void stream_large_clouds(CloudInput& source, CloudInput& target, const ScaleOptions& options,
+                         const ProgressCallback& progress) {
+  if (source.whole() && target.whole()) return;
+  const double fine = choose_voxel_size(source.points, target.points, options) / 4.0;
+  if (!source.whole()) source.points = read_centroids(source, fine, "filter source", progress);
+  if (!target.whole()) target.points = read_centroids(target, fine, "filter target", progress);
+}
+
+// Floats are written only where their rounding is far below what the scan resolves.
+bool floats_suffice(PointView points, double voxel_size) {
+  double largest = 0.0;
+  for (const Eigen::Vector3d& point : points) largest = std::max(largest, point.cwiseAbs().maxCoeff());
+  return std::ldexp(largest, -24) <= 1e-4 * voxel_size;
+}
+
+void write_aligned(const AlignSettings& settings, Points points, const Result& result) {
+  if (moves_foreign(settings.source, settings.aligned)) {
+    return write_moved_foreign(settings.source, settings.aligned, result.target_from_source);
+  }
+  for (Eigen::Vector3d& point : points) point = result.target_from_source * point;
+  write_points(settings.aligned, points,
+               {.format = format_of(settings.aligned), .single_precision = floats_suffice(points, result.voxel_size)});
+}
+
+// The reports say what happened in any case; the other files exist only for an answer to rely on, unless forced.
+void write_outputs(const AlignSettings& settings, const Result& result, const Json& report, CloudInput& source,
+                   const CloudInput& target) {
+  if (!settings.report.empty()) write_text(settings.report, report_text(report));
+  if (!settings.html.empty()) write_text(settings.html, report_page(report, source.points, target.points));
+  const bool wanted = !settings.aligned.empty() || !settings.transformation.empty();
+  if (!wanted) return;
+  if (!result.has_estimate || !(result.registered || settings.force)) {
+    std::cout << "not written, since the pair is not registered:";
+    for (const fs::path& path : {settings.aligned, settings.transformation}) {
+      if (!path.empty()) std::cout << ' ' << path.string();
+    }
+    std::cout << (result.has_estimate ? " (--force writes the estimate)\n" : "\n");
+    return;
+  }
+  stop_if_interrupted();
+  if (!settings.transformation.empty()) write_transformation(settings.transformation, result.target_from_source);
+  stop_if_interrupted();
+  if (!settings.aligned.empty()) write_aligned(settings, std::move(source.points), result);
+}
+
+int run_align(const AlignSettings& settings) {
+  const double start = now_s();
+  const Options options = resolve(*settings.option_flags);
+  if (settings.max_points < 1000) {
+    throw InvalidArgument(fmt::format("--max-points is {}; it must be at least 1000", settings.max_points));
+  }
+  check_outputs(settings);
+  std::optional<Transformation> initial;
+  if (!settings.initial.empty()) initial = read_transformation(settings.initial);
+  ProgressBar bar(!settings.quiet);
+  const ProgressCallback progress = bar.callback();
+  const auto max_points = static_cast<std::size_t>(settings.max_points);
+  CloudInput source = read_cloud(settings.source, max_points, "read source", progress);
+  CloudInput target = read_cloud(settings.target, max_points, "read target", progress);
+  if (!source.whole() && !settings.aligned.empty() && !moves_foreign(settings.source, settings.aligned)) {
+    throw InvalidArgument(fmt::format("-o needs all points in memory: {} has {}, --max-points is {}",
+                                      source.path.string(), source.total, settings.max_points));
+  }
+  const std::vector<std::string> warnings = warnings_about(source, target);
+  stream_large_clouds(source, target, options.scale, progress);
+  const double read = now_s(), cpu_before = cpu_now_s();
+  Result result = initial ? align(source.points, target.points, *initial, options, progress)
+                          : align(source.points, target.points, options, progress);
+  const double cpu_seconds = cpu_now_s() - cpu_before;
+  stop_if_interrupted();
+  bar.finish();
+  result.source.points = source.total;
+  result.target.points = target.total;
+  result.timings_s.insert(result.timings_s.begin(), {"read", read - start});
+  for (const std::string& warning : warnings) {
+    if (!settings.quiet) std::cerr << "igsp: warning: " << warning << "\n";
+  }
+  std::cout << answer_text(result, options.scale.voxel_size > 0.0, now_s() - start);
+  if (settings.verbose) std::cout << details_text(result);
+  write_outputs(settings, result, align_report(result, source, target, cpu_seconds, warnings), source, target);
+  return result.registered ? exit_registered : exit_not_registered;
+}
+
+constexpr const char* examples =
+    "Examples:\n"
+    "  igsp align source.ply target.ply\n"
+    "  igsp align a.pcd b.xyz --preset paper --voxel-size 0.1 -o aligned.ply --transform T.txt --report run.json\n"
+    "  igsp align a.ply b.ply --config igsp.toml --threads 4\n"
+    "The options start from --preset or --config; flags override them. Exit codes: 0 registered, 1 not registered,\n"
+    "2 usage or option, 3 input or output, 130 interrupted. PLY, PCD and text (XYZ, TXT, CSV, PTS) are read, written;\n"
+    "the command of the Python package also takes LAS, LAZ, E57 and PTX, and writes them moved, their attributes kept.";
+
+}  // namespace
+
+void add_align_command(CLI::App& app, Command& command) {
+  CLI::App* align =
+      app.add_subcommand("align", "find target_from_source, the rigid motion that puts SOURCE onto TARGET");
+  const auto settings = std::make_shared<AlignSettings>();
+  align->add_option("SOURCE", settings->source, "cloud that moves")->required()->type_name("");
+  align->add_option("TARGET", settings->target, "cloud that stays")->required()->type_name("");
+  align->add_option("-o,--output", settings->aligned, "write all points of SOURCE, moved into TARGET's frame")
+      ->type_name("FILE");
+  align->add_option("--transform", settings->transformation, "write target_from_source, 4x4 text")->type_name("FILE");
+  align->add_option("--report", settings->report, "write the whole answer as JSON, whatever the verdict")
+      ->type_name("FILE");
+  align->add_option("--html", settings->html, "write a page to look at: clouds, iterations, evidence (igsp report)")
+      ->type_name("FILE");
+  align->add_option("--initial", settings->initial, "start from this target_from_source, 4x4 text, instead of a search")
+      ->type_name("FILE");
+  align->add_flag("--force", settings->force, "write -o and --transform also for an estimate that is not registered");
+  align
+      ->add_option("--max-points", settings->max_points,
+                   wrapped("a cloud with more points is streamed through the voxel filter instead of kept whole; "
+                           "default 20000000"))
+      ->type_name("INTEGER");
+  CLI::Option* quiet = align->add_flag("--quiet", settings->quiet, "no progress and no warnings, only the answer");
+  align->add_flag("--verbose", settings->verbose, "also a line per iteration and per stage")->excludes(quiet);
+  settings->option_flags = add_option_flags(*align);
+  align->footer(examples);
+  align->callback([settings, &command] { command = [settings] { return run_align(*settings); }; });
+}
+
+}  // namespace igsp::cli

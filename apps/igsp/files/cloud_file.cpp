@@ -1,0 +1,54 @@
+#include "files/cloud_file.hpp"
+
+namespace igsp::cli {
+namespace {
+
+std::string_view name_of(FileFormat format) {
+  switch (format) {
+    case FileFormat::ply_ascii:
+      return "PLY, ascii";
+    case FileFormat::ply_binary_little_endian:
+      return "PLY, binary little endian";
+    case FileFormat::ply_binary_big_endian:
+      return "PLY, binary big endian";
+    case FileFormat::pcd_ascii:
+      return "PCD, ascii";
+    case FileFormat::pcd_binary:
+      return "PCD, binary";
+    case FileFormat::pcd_binary_compressed:
+      return "PCD, binary compressed";
+    case FileFormat::text:
+      return "text";
+  }
+  return "";
+}
+
+std::variant<PointReader, ForeignCloud> open(const std::filesystem::path& path) {
+  if (reads_foreign(path)) return open_foreign(path);
+  check_not_foreign(path);
+  return PointReader(path);
+}
+
+}  // namespace
+
+CloudFile::CloudFile(const std::filesystem::path& path) : reader_(open(path)) {}
+
+PointView CloudFile::next_chunk() {
+  return std::visit([](auto& reader) { return reader.next_chunk(); }, reader_);
+}
+
+std::string CloudFile::format() const {
+  const PointReader* own = std::get_if<PointReader>(&reader_);
+  return own ? std::string(name_of(own->format())) : std::get<ForeignCloud>(reader_).format;
+}
+
+std::size_t CloudFile::dropped() const {
+  return std::visit([](const auto& reader) { return reader.dropped(); }, reader_);
+}
+
+std::size_t CloudFile::declared_points() const {
+  const PointReader* own = std::get_if<PointReader>(&reader_);
+  return own ? own->declared_points() : 0;
+}
+
+}  // namespace igsp::cli

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <variant>
+
+#include "files/foreign_formats.hpp"
+#include "igsp/io.hpp"
+
+namespace igsp::cli {
+
+/// A cloud in a file, in chunks of finite points: by igsp's own readers or, where they do not know the format, by those
+/// that were handed to the command.
+class CloudFile {
+ public:
+  /// Throws FileError.
+  explicit CloudFile(const std::filesystem::path& path);
+
+  /// Empty at the end; valid until the next call. Throws FileError.
+  PointView next_chunk();
+
+  std::string format() const;           ///< for people: "PLY, ascii"
+  std::size_t dropped() const;          ///< non-finite points met so far
+  std::size_t declared_points() const;  ///< 0 where the format or its reader does not say
+
+ private:
+  std::variant<PointReader, ForeignCloud> reader_;
+};
+
+}  // namespace igsp::cli

@@ -1,0 +1,97 @@
+#include "files/cloud_input.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "files/cloud_file.hpp"
+#include "igsp/errors.hpp"
+#include "spatial/voxel_grid.hpp"
+
+namespace igsp::cli {
+namespace {
+
+void report(const ProgressCallback& progress, std::string_view stage, std::size_t done, std::size_t all) {
+  const double fraction = all > 0 ? std::min(1.0, static_cast<double>(done) / static_cast<double>(all)) : 0.0;
+  if (progress && !progress({stage, fraction})) throw Cancelled();
+}
+
+// Keeps every stride-th point of a stream; doubles the stride whenever more than `limit` would be kept.
+class ThinnedStream {
+ public:
+  explicit ThinnedStream(std::size_t limit) : limit_(limit) {}
+
+  void add(PointView chunk) {
+    for (const Eigen::Vector3d& point : chunk) {
+      if (seen_++ % stride_ == 0) kept_.push_back(point);
+      if (kept_.size() > limit_) halve();
+    }
+  }
+  Points take() { return std::move(kept_); }
+
+ private:
+  void halve() {
+    for (std::size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i] = kept_[2 * i];
+    kept_.resize((kept_.size() + 1) / 2);
+    stride_ *= 2;
+  }
+
+  std::size_t limit_, seen_ = 0, stride_ = 1;
+  Points kept_;
+};
+
+void check_extent(const CloudInput& cloud) {
+  const auto fail = [&](const std::string& why) {
+    const std::string dropped =
+        cloud.dropped > 0 ? fmt::format(" ({} dropped for a coordinate that is not finite)", cloud.dropped) : "";
+    throw FileError(fmt::format("{}: {}{}", cloud.path.string(), why, dropped));
+  };
+  if (cloud.total == 0) fail("holds no finite point");
+  if (cloud.total == 1) fail("holds a single point");
+  if (cloud.bounds.diagonal() == 0.0) fail(fmt::format("all {} points are equal", cloud.total));
+}
+
+}  // namespace
+
+CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points, std::string_view stage,
+                      const ProgressCallback& progress) {
+  CloudFile reader(path);
+  CloudInput cloud;
+  cloud.path = path;
+  cloud.format = reader.format();
+  cloud.bounds = {Eigen::Vector3d::Constant(HUGE_VAL), Eigen::Vector3d::Constant(-HUGE_VAL)};
+  ThinnedStream kept(max_points);
+  for (PointView chunk = reader.next_chunk(); !chunk.empty(); chunk = reader.next_chunk()) {
+    for (const Eigen::Vector3d& point : chunk) {
+      cloud.bounds.min = cloud.bounds.min.cwiseMin(point);
+      cloud.bounds.max = cloud.bounds.max.cwiseMax(point);
+    }
+    kept.add(chunk);
+    cloud.total += chunk.size();
+    report(progress, stage, cloud.total + reader.dropped(), reader.declared_points());
+  }
+  cloud.points = kept.take();
+  cloud.dropped = reader.dropped();
+  check_extent(cloud);
+  return cloud;
+}
+
+Points read_centroids(const CloudInput& cloud, double voxel_size, std::string_view stage,
+                      const ProgressCallback& progress) {
+  CloudFile reader(cloud.path);
+  const Eigen::Vector3d origin = centre_of(cloud.bounds);
+  std::size_t read = 0;
+  Points centroids = voxel_centroids(
+      [&] {
+        report(progress, stage, read, cloud.total);
+        const PointView chunk = reader.next_chunk();
+        read += chunk.size();
+        return chunk;
+      },
+      origin, voxel_size);
+  for (Eigen::Vector3d& centroid : centroids) centroid += origin;
+  return centroids;
+}
+
+}  // namespace igsp::cli

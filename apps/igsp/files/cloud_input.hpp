@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+#include "igsp/progress.hpp"
+#include "spatial/scale.hpp"
+
+namespace igsp::cli {
+
+/// A cloud as it came from a file.
+struct CloudInput {
+  std::filesystem::path path;
+  std::string format;       ///< for people: "PLY, ascii"
+  Points points;            ///< all of them, or every n-th if the file holds more than were asked for
+  std::size_t total = 0;    ///< finite points in the file
+  std::size_t dropped = 0;  ///< points left out for a coordinate that is not finite
+  Bounds bounds;            ///< of all points
+  bool whole() const { return points.size() == total; }
+};
+
+/// Reads a cloud in one pass; one of more than `max_points` is thinned to every 2nd, 4th, ... point on the way, so that
+/// memory stays bounded. `stage` is the name of the progress. Throws FileError (also for a cloud without any extent).
+CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points, std::string_view stage,
+                      const ProgressCallback& progress);
+
+/// Voxel centroids of the whole file, in the file's frame, read in chunks: memory grows with the voxels only.
+Points read_centroids(const CloudInput& cloud, double voxel_size, std::string_view stage,
+                      const ProgressCallback& progress);
+
+}  // namespace igsp::cli

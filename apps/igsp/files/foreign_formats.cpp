@@ -1,0 +1,53 @@
+#include "files/foreign_formats.hpp"
+
+#include <fmt/format.h>
+
+#include "igsp/errors.hpp"
+#include "io/file_format.hpp"
+
+namespace igsp::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+ForeignFormats& foreign_formats() {
+  static ForeignFormats formats;
+  return formats;
+}
+
+}  // namespace
+
+void use_foreign_formats(ForeignFormats formats) {
+  foreign_formats() = std::move(formats);
+}
+
+bool reads_foreign(const fs::path& path) {
+  const bool own = io::family_of(path) != io::FormatFamily::unknown;
+  return !own && foreign_formats().reads && foreign_formats().reads(path);
+}
+
+bool moves_foreign(const fs::path& source, const fs::path& output) {
+  return foreign_formats().moves && foreign_formats().moves(source, output);
+}
+
+ForeignCloud open_foreign(const fs::path& path) {
+  return foreign_formats().open(path);
+}
+
+void write_moved_foreign(const fs::path& source, const fs::path& output, const Transformation& target_from_source) {
+  foreign_formats().write_moved(source, output, target_from_source);
+}
+
+void check_not_foreign(const fs::path& path) {
+  const std::string extension = io::extension_of(path);
+  const bool las = extension == ".las" || extension == ".laz";
+  if (!las && extension != ".e57" && extension != ".ptx") return;
+  throw FileError(
+      fmt::format("{}: this build of igsp does not know {} files; the same command from pip install 'igsp{}' does",
+                  path.string(), extension,
+                  las                   ? "[las]"
+                  : extension == ".e57" ? "[e57]"
+                                        : ""));
+}
+
+}  // namespace igsp::cli

@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "files/cloud_input.hpp"
+#include "shell/commands.hpp"
+#include "shell/exit_codes.hpp"
+#include "shell/progress_bar.hpp"
+#include "spatial/point_grid.hpp"
+
+namespace igsp::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kept_points = 20'000'000;
+
+// Median distance to the nearest other point, over a sample.
+double spacing_of(PointView cloud, const Bounds& bounds, double voxel_size) {
+  const Eigen::Vector3d origin = centre_of(bounds);
+  Points local(cloud.begin(), cloud.end());
+  for (Eigen::Vector3d& point : local) point -= origin;
+  const PointGrid grid(local, voxel_size);
+  std::vector<float> distances;
+  const std::size_t stride = std::max<std::size_t>(1, local.size() / 2000);
+  for (std::size_t i = 0; i < local.size(); i += stride) {
+    float nearest = INFINITY;
+    for (double radius = voxel_size; !std::isfinite(nearest); radius *= 2.0) {
+      grid.visit_sphere(local[i].cast<float>(), static_cast<float>(radius), [&](std::uint32_t j, float squared) {
+        if (grid.index[j] != i) nearest = std::min(nearest, squared);
+      });
+    }
+    distances.push_back(std::sqrt(nearest));
+  }
+  std::ranges::nth_element(distances, distances.begin() + distances.size() / 2);
+  return distances[distances.size() / 2];
+}
+
+void print_info(const CloudInput& cloud) {
+  const Eigen::Vector3d extent = cloud.bounds.max - cloud.bounds.min;
+  const double magnitude = cloud.bounds.min.cwiseAbs().cwiseMax(cloud.bounds.max.cwiseAbs()).maxCoeff();
+  const double voxel_size = choose_voxel_size(cloud.points, cloud.points, {});
+  const double spacing = spacing_of(cloud.points, cloud.bounds, voxel_size);
+  fmt::print("{}\n", cloud.path.string());
+  fmt::print("  format                {}\n", cloud.format);
+  fmt::print("  points                {}{}\n", cloud.total,
+             cloud.dropped > 0 ? fmt::format(" and {} dropped, not finite", cloud.dropped) : "");
+  fmt::print("  extent                {:.6g} x {:.6g} x {:.6g}\n", extent.x(), extent.y(), extent.z());
+  fmt::print("  from                  {:.10g}\n", fmt::join(cloud.bounds.min.data(), cloud.bounds.min.data() + 3, " "));
+  fmt::print("  to                    {:.10g}\n", fmt::join(cloud.bounds.max.data(), cloud.bounds.max.data() + 3, " "));
+  fmt::print("  largest coordinate    {:.10g} (as float: exact to {:.2g})\n", magnitude, std::ldexp(magnitude, -24));
+  fmt::print("  spacing               {:.4g}{}\n", spacing, cloud.whole() ? "" : " (of the points kept in memory)");
+  fmt::print("  suggested voxel size  {:.4g}\n", voxel_size);
+}
+
+int run_info(const std::vector<fs::path>& paths) {
+  for (const fs::path& path : paths) {
+    ProgressBar bar(true);
+    const CloudInput cloud = read_cloud(path, kept_points, "read", bar.callback());
+    bar.finish();
+    print_info(cloud);
+  }
+  return exit_registered;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, Command& command) {
+  CLI::App* info = app.add_subcommand("info", "what a point cloud file holds, and the voxel size that suits it");
+  const auto paths = std::make_shared<std::vector<fs::path>>();
+  info->add_option("FILE", *paths, "PLY, PCD or text (XYZ, TXT, CSV, PTS)")->required()->type_name("");
+  info->footer(
+      "Example:\n  igsp info scan.ply\n"
+      "The voxel size of a pair, one for both clouds, is chosen and printed by `igsp align`.");
+  info->callback([paths, &command] { command = [paths] { return run_info(*paths); }; });
+}
+
+}  // namespace igsp::cli
