@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,7 @@ using Descriptor = std::array<std::uint64_t, bsc_words>;
 /// survey coordinates lose nothing.
 struct Features {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Vector3d> viewpoint;  ///< where the scanner stood, local; none: unknown
   double voxel_size = 0.0;
   Points points;                         ///< voxel centroids, local
   std::vector<float> curvature;          ///< per point: surface variation, [0, 1/3]
@@ -35,7 +37,7 @@ struct Features {
 };
 
 /// Everything that depends on one cloud alone. Uses options.scale.voxel_size, or the cloud's own scale when it is 0.
-/// Throws InvalidArgument (empty cloud, non-finite point, option out of range), Cancelled.
-Features extract_features(PointView cloud, const Options& options = {}, const ProgressCallback& progress = {});
+/// Throws InvalidArgument (empty cloud, non-finite point or viewpoint, option out of range), Cancelled.
+Features extract_features(const Scan& cloud, const Options& options = {}, const ProgressCallback& progress = {});
 
 }  // namespace igsp

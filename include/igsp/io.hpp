@@ -48,8 +48,11 @@ class PointReader {
 };
 
 struct LoadedCloud {
+  operator Scan() const { return {points, viewpoint}; }
+
   Points points;
-  std::size_t dropped = 0;  ///< non-finite points left out
+  std::optional<Eigen::Vector3d> viewpoint;  ///< where the file says that the scanner stood
+  std::size_t dropped = 0;                   ///< non-finite points left out
   FileFormat format = FileFormat::ply_binary_little_endian;
 };
 

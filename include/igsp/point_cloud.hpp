@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,18 @@ using Points = std::vector<Eigen::Vector3d>;
 
 /// A view of such points; a C-contiguous (N, 3) float64 array can be viewed without a copy.
 using PointView = std::span<const Eigen::Vector3d>;
+
+/// A cloud and, where it is known, where its scanner stood, in the frame of the points. A viewpoint many extents away
+/// stands for a scanner that looked along one direction. None: unknown, or fused from scans of several places.
+struct Scan {
+  Scan(PointView scan_points, const std::optional<Eigen::Vector3d>& scan_viewpoint = {})
+      : points(scan_points), viewpoint(scan_viewpoint) {}
+  Scan(const Points& scan_points, const std::optional<Eigen::Vector3d>& scan_viewpoint = {})
+      : points(scan_points), viewpoint(scan_viewpoint) {}
+
+  PointView points;
+  std::optional<Eigen::Vector3d> viewpoint;
+};
 
 /// Hands out a cloud in pieces: every call returns the next chunk, an empty one at the end. A chunk is valid until the
 /// next call. Lets the voxel filter run over clouds that do not fit in memory.

@@ -50,6 +50,7 @@ struct CloudSummary {
   std::size_t points = 0;  ///< as given
   std::size_t voxels = 0;  ///< after the voxel filter
   std::size_t keypoints = 0;
+  std::optional<Eigen::Vector3d> viewpoint;  ///< where the scanner stood, as given
 };
 
 /// A rigid motion of the source that hardly changes how it lies on the target: the surfaces do not fix it.
@@ -70,13 +71,28 @@ struct Precision {
   std::vector<FreeDirection> free_directions;  ///< at the pose; where it is refused and has none, of the target alone
 };
 
-/// What the verdict is made of: two independent questions to the clouds at the pose.
+/// How one cloud contradicts what the scanner of the other saw: it saw through this space, so it is empty.
+struct FreeSpaceViolation {
+  std::size_t in_view = 0;        ///< of the voxels that were looked at, those where the scanner saw something
+  std::size_t contradicting = 0;  ///< of them, those in front of what it saw
+  double share() const;           ///< contradicting of in_view, [0, 1); where few are in view, less
+};
+
+/// Both directions, of those that can be told.
+struct FreeSpace {
+  std::optional<FreeSpaceViolation> source;  ///< source before the target's scanner, if that one's viewpoint is known
+  std::optional<FreeSpaceViolation> target;  ///< target before the source's scanner
+  double violation() const;                  ///< the larger share; 0 where no viewpoint is known
+};
+
+/// What the verdict is made of: independent questions to the clouds at the pose.
 struct Evidence {
   std::size_t mutual_matches = 0;    ///< mutual nearest neighbours among the descriptors in a common frame ...
   std::size_t agreeing_matches = 0;  ///< ... and those of them within 2.5 voxels
   double contact_share = 0.0;        ///< of the places where the surfaces meet, the share where they touch, (0, 1)
   double quality = 0.0;              ///< Q of docs/method.md: both shares in one number, for the log odds
   double rival_odds = 0.0;           ///< odds of the other poses that were looked into, against this one
+  FreeSpace free_space;
 };
 
 /// The best other pose that was looked into.

@@ -18,9 +18,12 @@ struct SimulationOptions {
   std::uint64_t seed = 7;       ///< every seed is another scene
 };
 
-/// One scan in the scanner's own frame (its origin is the sensor), and where the scanner stood.
+/// One scan in the scanner's own frame, and where the scanner stood.
 struct SimulatedScan {
+  operator Scan() const { return {points, viewpoint}; }
+
   Points points;
+  std::optional<Eigen::Vector3d> viewpoint;  ///< the origin; none where the points lie on no surface
   Transformation world_from_scanner = Transformation::Identity();
 };
 

@@ -1,10 +1,13 @@
 #include "igsp/features.hpp"
 
+#include <fmt/format.h>
+
 #include "core/parallel.hpp"
 #include "core/stage_clock.hpp"
 #include "features/bsc.hpp"
 #include "features/keypoints.hpp"
 #include "features/reference_frame.hpp"
+#include "igsp/errors.hpp"
 #include "spatial/scale.hpp"
 #include "spatial/scatter_filter.hpp"
 #include "spatial/voxel_grid.hpp"
@@ -13,6 +16,12 @@ namespace igsp {
 namespace {
 
 constexpr double fine_voxels = 0.5;  // voxels: finer ones brought no accuracy on scans whose truth is known
+
+void require_finite(const std::optional<Eigen::Vector3d>& viewpoint) {
+  if (!viewpoint || viewpoint->allFinite()) return;
+  throw InvalidArgument(fmt::format("viewpoint = {},{},{} is not finite; three finite coordinates are needed",
+                                    viewpoint->x(), viewpoint->y(), viewpoint->z()));
+}
 
 void describe_keypoints(const PointGrid& grid, const Options& options, const StageClock& clock, Features& features) {
   const double radius = options.descriptor.radius * features.voxel_size;
@@ -33,8 +42,10 @@ void describe_keypoints(const PointGrid& grid, const Options& options, const Sta
 
 }  // namespace
 
-Features extract_features(PointView cloud, const Options& options, const ProgressCallback& progress) {
+Features extract_features(const Scan& scan, const Options& options, const ProgressCallback& progress) {
   validate(options);
+  require_finite(scan.viewpoint);
+  PointView cloud = scan.points;
   StageClock clock(progress);
   Features features;
   features.cloud_points = cloud.size();
@@ -42,6 +53,7 @@ Features extract_features(PointView cloud, const Options& options, const Progres
   const Bounds bounds = bounds_of(cloud, "cloud");
   features.voxel_size = choose_voxel_size(cloud, cloud, options.scale);
   features.origin = centre_of(bounds);
+  if (scan.viewpoint) features.viewpoint = *scan.viewpoint - features.origin;
   const ScatterFilter filter(cloud, bounds, scatter_density(cloud, bounds), scatter_cell * features.voxel_size);
   const Points kept = filter.keeps_all() ? Points() : without_scatter(cloud, filter);
   if (!filter.keeps_all()) cloud = kept;

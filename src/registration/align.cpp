@@ -34,7 +34,9 @@ Points keypoints_in_world(const Features& features) {
 }
 
 CloudSummary summary_of(const Features& features) {
-  return {features.cloud_points, features.points.size(), features.keypoints.size()};
+  std::optional<Eigen::Vector3d> viewpoint = features.viewpoint;
+  if (viewpoint) *viewpoint += features.origin;
+  return {features.cloud_points, features.points.size(), features.keypoints.size(), viewpoint};
 }
 
 void check_compatible(const Features& source, const Features& target) {
@@ -70,11 +72,11 @@ std::string_view to_string(Termination termination) {
 namespace {
 
 // No scale can be chosen, nor is anything there to register: an answer, not the caller's mistake.
-Result without_extent(PointView source, PointView target, const Options& options) {
+Result without_extent(const Scan& source, const Scan& target, const Options& options) {
   Result result;
   result.options = options;
-  result.source.points = source.size();
-  result.target.points = target.size();
+  result.source.points = source.points.size();
+  result.target.points = target.points.size();
   result.termination = Termination::too_few_keypoints;
   result.reason = "all points coincide in both clouds: there is nothing to register";
   return result;
@@ -117,15 +119,16 @@ Result align_features(const Features& source, const Features& target, const Tran
   return result;
 }
 
-Result align_points(PointView source, PointView target, const Transformation* initial, const Options& options,
+Result align_points(const Scan& source, const Scan& target, const Transformation* initial, const Options& options,
                     const ProgressCallback& progress) {
   validate(options);
-  const double extent = std::max(bounds_of(source, "source").diagonal(), bounds_of(target, "target").diagonal());
+  const double extent =
+      std::max(bounds_of(source.points, "source").diagonal(), bounds_of(target.points, "target").diagonal());
   if (extent == 0 && options.scale.voxel_size == 0) return without_extent(source, target, options);
   StageClock clock(progress);
   clock.start("scale");
   Options scaled = options;
-  scaled.scale.voxel_size = choose_voxel_size(source, target, options.scale);
+  scaled.scale.voxel_size = choose_voxel_size(source.points, target.points, options.scale);
   clock.finish();
   const Features source_features = extract_features(source, scaled, progress);
   const Features target_features = extract_features(target, scaled, progress);
@@ -136,11 +139,11 @@ Result align_points(PointView source, PointView target, const Transformation* in
 
 }  // namespace
 
-Result align(PointView source, PointView target, const Options& options, const ProgressCallback& progress) {
+Result align(const Scan& source, const Scan& target, const Options& options, const ProgressCallback& progress) {
   return align_points(source, target, nullptr, options, progress);
 }
 
-Result align(PointView source, PointView target, const Transformation& initial, const Options& options,
+Result align(const Scan& source, const Scan& target, const Transformation& initial, const Options& options,
              const ProgressCallback& progress) {
   return align_points(source, target, &initial, options, progress);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "registration/free_space.hpp"
 #include "registration/hypotheses.hpp"
 #include "registration/pose_assessment.hpp"
 #include "registration/precision.hpp"
@@ -87,8 +88,12 @@ void judge(CommonFrame& frame, const SearchOutcome& outcome, Result& result) {
   result.rmse = outcome.precision.inlier_rmse;
   result.precision = outcome.precision;
   result.precision.free_directions = free_directions(frame.source(), frame.target(), outcome.target_from_source);
-  result.evidence = {pose.mutual_matches, pose.agreeing_matches,
-                     std::sqrt(pose.source_on_target.share * pose.target_on_source.share), pose.quality};
+  result.evidence = {pose.mutual_matches,
+                     pose.agreeing_matches,
+                     std::sqrt(pose.source_on_target.share * pose.target_on_source.share),
+                     pose.quality,
+                     0.0,
+                     free_space(frame.source(), frame.target(), outcome.target_from_source)};
 
   const std::vector<Rival> rivals = true_rivals(frame, outcome);
   if (!rivals.empty()) {

@@ -38,8 +38,10 @@ std::vector<SimulatedScan> simulate(std::string_view scene_name, const Simulatio
   for (const Transformation& pose :
        simulation::place_stations(scene, options.stations, options.station_distance, random)) {
     const simulation::Random of_station(random.bits());
-    scans.push_back(
-        {simulation::scan(scene, pose, options.points, options.noise.value_or(scene.noise), of_station), pose});
+    std::optional<Eigen::Vector3d> viewpoint;
+    if (scene.sensor != simulation::Sensor::none) viewpoint = Eigen::Vector3d::Zero();
+    scans.push_back({simulation::scan(scene, pose, options.points, options.noise.value_or(scene.noise), of_station),
+                     viewpoint, pose});
   }
   return scans;
 }

@@ -1,0 +1,206 @@
+#include "registration/free_space.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+
+#include "core/core_testing.hpp"
+
+namespace igsp {
+namespace {
+
+using Eigen::Vector3d;
+using testing::Random;
+
+constexpr double voxel_size = 0.08;
+
+/// Boxes, and a scanner that turns once around.
+struct Boxes {
+  std::vector<Eigen::AlignedBox3d> solids;
+
+  double first_hit(const Vector3d& eye, const Vector3d& direction) const {
+    double first = std::numeric_limits<double>::infinity();
+    for (const Eigen::AlignedBox3d& box : solids) {
+      const Eigen::Array3d low = (box.min() - eye).array() / direction.array();
+      const Eigen::Array3d high = (box.max() - eye).array() / direction.array();
+      const double enter = low.min(high).maxCoeff(), leave = low.max(high).minCoeff();
+      if (enter > 0 && enter <= leave) first = std::min(first, enter);
+    }
+    return first;
+  }
+
+  Points seen_from(const Vector3d& eye, Random random) const {
+    Points points;
+    for (int i = 0; i < 60000; ++i) {
+      const Vector3d direction = random.direction();
+      const double range = first_hit(eye, direction) + 0.003 * random.normal();
+      if (std::isfinite(range)) points.push_back(eye + range * direction);
+    }
+    return points;
+  }
+};
+
+Eigen::AlignedBox3d box(double x0, double y0, double z0, double x1, double y1, double z1) {
+  return {Vector3d(x0, y0, z0), Vector3d(x1, y1, z1)};
+}
+
+/// Two rooms of 6 m x 5 m side by side, x < 0 and x > 0, a door in the wall between them, other furniture in each.
+Boxes two_rooms() {
+  return {{box(-6, 0, -0.2, 6, 5, 0), box(-6, 0, 3, 6, 5, 3.2),  // floor, ceiling
+           box(-6, -0.2, 0, 6, 0, 3), box(-6, 5, 0, 6, 5.2, 3),  // long walls
+           box(-6.2, 0, 0, -6, 5, 3), box(6, 0, 0, 6.2, 5, 3),   // short walls
+           box(-0.1, 0, 0, 0.1, 3.5, 3), box(-0.1, 4.5, 0, 0.1, 5, 3),
+           box(-0.1, 3.5, 2.1, 0.1, 4.5, 3),  // with the door
+           box(-5, 0, 0, -4, 0.6, 2.2), box(-3.2, 2, 0, -1.6, 2.9, 0.75), box(-6, 4, 0, -5.2, 5, 1.2),
+           box(1, 1, 0, 1.8, 2.6, 0.9), box(4.6, 0, 0, 6, 2, 0.5), box(3, 4.3, 0, 4.2, 5, 2),
+           box(3.6, 2.4, 0, 4.4, 3.2, 1.1)}};
+}
+const Vector3d left_eye(-2, 3.8, 1.5), right_eye(2.2, 3.6, 1.5);
+
+struct Cloud {
+  Cloud(const Scan& scan) : features(extract_features(scan, options())), prepared(features) {}
+  static Options options() {
+    Options options;
+    options.threads = 1;
+    options.scale.voxel_size = voxel_size;
+    return options;
+  }
+  Features features;
+  PreparedCloud prepared;
+};
+
+/// Of two scans given in one frame, when the first is moved by `motion`.
+FreeSpace violations(const Scan& source, const Scan& target,
+                     const Transformation& motion = Transformation::Identity()) {
+  const Cloud a(source), b(target);
+  Transformation local = motion;  // between the centred clouds
+  local.translation() = motion * a.features.origin - b.features.origin;
+  return free_space(a.prepared, b.prepared, local);
+}
+
+Transformation shift(double x, double y, double z) {
+  return Transformation(Eigen::Translation3d(x, y, z));
+}
+
+TEST(FreeSpace, AScanDoesNotContradictItself) {
+  const Points scan = two_rooms().seen_from(left_eye, Random(1));
+  const FreeSpace f = violations({scan, left_eye}, {scan, left_eye});
+  ASSERT_TRUE(f.source && f.target);
+  EXPECT_EQ(f.source->contradicting, 0u);
+  EXPECT_EQ(f.target->contradicting, 0u);
+  EXPECT_GT(f.source->in_view, 800u);
+  EXPECT_EQ(f.violation(), 0);
+}
+
+TEST(FreeSpace, TwoRoomsWithAWallBetweenThem) {
+  const Points left = two_rooms().seen_from(left_eye, Random(1)), right = two_rooms().seen_from(right_eye, Random(2));
+  const Scan source{left, left_eye}, target{right, right_eye};
+  EXPECT_LT(violations(source, target).violation(), 0.003);
+  // One room in the place of the other, as it is or turned: floor, walls and ceiling touch.
+  EXPECT_GT(violations(source, target, shift(6, 0, 0)).violation(), 0.05);
+  const Eigen::AngleAxisd half_turn(std::numbers::pi, Vector3d::UnitZ());
+  EXPECT_GT(violations(source, target, shift(0, 5, 0) * half_turn).violation(), 0.03);
+}
+
+TEST(FreeSpace, APersonWhoWalksThroughIsForgiven) {
+  Boxes busy = two_rooms();
+  busy.solids.push_back(box(-3.9, 3.2, 0, -3.4, 3.6, 1.8));
+  const Vector3d other_eye(-4.4, 1.5, 1.5);
+  const Points empty_room = two_rooms().seen_from(left_eye, Random(1)),
+               with_person = busy.seen_from(other_eye, Random(2));
+  const FreeSpace f = violations({with_person, other_eye}, {empty_room, left_eye});
+  EXPECT_GT(f.source->contradicting, 0u);
+  EXPECT_LT(f.violation(), 0.03);
+}
+
+TEST(FreeSpace, AViewpointWrongByAMetreStillRefutesTheNeighboursRoom) {
+  const Points left = two_rooms().seen_from(left_eye, Random(1)), right = two_rooms().seen_from(right_eye, Random(2));
+  const Scan source{left, left_eye + Vector3d(-1, 0, 0)}, target{right, right_eye + Vector3d(0, -1, 0)};
+  EXPECT_GT(violations(source, target, shift(6, 0, 0)).violation(), 0.05);
+}
+
+TEST(FreeSpace, WithoutAViewpointNothingIsSaid) {
+  const Points left = two_rooms().seen_from(left_eye, Random(1)), right = two_rooms().seen_from(right_eye, Random(2));
+  const FreeSpace none = violations(left, right, shift(6, 0, 0));
+  EXPECT_FALSE(none.source || none.target);
+  EXPECT_EQ(none.violation(), 0);
+  const FreeSpace half = violations(left, {right, right_eye}, shift(6, 0, 0));
+  EXPECT_TRUE(half.source);
+  EXPECT_FALSE(half.target);
+  EXPECT_GT(half.violation(), 0.03);
+}
+
+TEST(FreeSpace, DoesNotDependOnTheFrame) {
+  Random random(7);
+  const Points left = two_rooms().seen_from(left_eye, Random(1)), right = two_rooms().seen_from(right_eye, Random(2));
+  const FreeSpace here = violations({left, left_eye}, {right, right_eye}, shift(6, 0, 0));
+  const Transformation g = random.motion(100), h = random.motion(100);
+  const FreeSpace there = violations({testing::moved(g, left), g * left_eye}, {testing::moved(h, right), h * right_eye},
+                                     h * shift(6, 0, 0) * g.inverse());
+  EXPECT_NEAR(there.source->share(), here.source->share(), 0.02);  // other voxels
+  EXPECT_NEAR(there.target->share(), here.target->share(), 0.02);
+}
+
+TEST(FreeSpace, FewInViewSayLittle) {
+  EXPECT_LT((FreeSpaceViolation{2, 2}).share(), 0.1);
+  EXPECT_GT((FreeSpaceViolation{1000, 1000}).share(), 0.95);
+  EXPECT_EQ((FreeSpaceViolation{}).share(), 0);
+}
+
+TEST(FreeSpace, BeyondTheRimOfWhatWasSeenNothingIsKnown) {
+  const Points wall = Boxes{{box(2, -1, -1, 2.1, 1, 1)}}.seen_from(Vector3d::Zero(), Random(1));
+  const RangeImage image(wall, Vector3d::Zero(), voxel_size);
+  EXPECT_EQ(image.look_at({1, 0, 0}), RangeImage::Sight::empty);
+  EXPECT_EQ(image.look_at({1, 0.3, -0.3}), RangeImage::Sight::empty);
+  EXPECT_EQ(image.look_at({1.9, 0, 0}), RangeImage::Sight::possible);  // thinner than the tolerance
+  EXPECT_EQ(image.look_at({3, 0, 0}), RangeImage::Sight::possible);    // hidden
+  EXPECT_EQ(image.look_at({1, 0.53, 0}), RangeImage::Sight::out_of_view);
+  EXPECT_EQ(image.look_at({-1, 0, 0}), RangeImage::Sight::out_of_view);
+  EXPECT_EQ(image.look_at({0, 0, 0}), RangeImage::Sight::out_of_view);
+}
+
+TEST(RangeImage, IsTheSameWhereverItIsTurned) {
+  Random random(3);
+  const Points scan = two_rooms().seen_from(left_eye, Random(1));
+  const RangeImage image(scan, left_eye, voxel_size);
+  const Transformation g = random.motion(1);
+  const RangeImage turned(testing::moved(g, scan), g * left_eye, voxel_size);
+  int different = 0, empty = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vector3d point = random.in_cube(6);
+    different += image.look_at(point) != turned.look_at(g * point);
+    empty += image.look_at(point) == RangeImage::Sight::empty;
+  }
+  EXPECT_LE(different, 4);  // rounding
+  EXPECT_GT(empty, 500);
+}
+
+TEST(RangeImage, AFarViewpointMeansParallelLinesOfSight) {
+  Random random(4);
+  const testing::BumpySurface surface(random);
+  const Points scan = surface.sample(random, 40000, 3);
+  const auto seen_from = [&](double height) { return RangeImage(scan, {0, 0, height}, voxel_size); };
+  const RangeImage far = seen_from(1e4), farther = seen_from(1e9), farthest = seen_from(1e300);
+  int different = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const double x = random.uniform(-2.8, 2.8), y = random.uniform(-2.8, 2.8);
+    const Vector3d above(x, y, surface.height_at(x, y) + 1.5), below(x, y, surface.height_at(x, y) - 1.5);
+    different += far.look_at(above) != RangeImage::Sight::empty;
+    EXPECT_EQ(far.look_at(below), RangeImage::Sight::possible);
+    different += far.look_at(above) != farther.look_at(above);
+    different += farther.look_at(above) != farthest.look_at(above);
+  }
+  EXPECT_LT(different, 100);  // steep slopes within the aperture
+}
+
+TEST(RangeImage, DegenerateCloudsSeeNothing) {
+  const Points none, one{Vector3d(1, 0, 0)}, line{Vector3d(1, 0, 0), Vector3d(2, 0, 0), Vector3d(3, 0, 0)};
+  EXPECT_EQ(RangeImage(none, Vector3d::Zero(), 1).look_at({0.5, 0, 0}), RangeImage::Sight::out_of_view);
+  EXPECT_EQ(RangeImage(one, Vector3d::Zero(), 1).look_at({0.5, 0, 0}), RangeImage::Sight::out_of_view);
+  EXPECT_EQ(RangeImage(one, one[0], 1).look_at({0.5, 0, 0}), RangeImage::Sight::out_of_view);
+  EXPECT_EQ(RangeImage(line, Vector3d::Zero(), 0.1).look_at({0.1, 0, 0}), RangeImage::Sight::empty);
+}
+
+}  // namespace
+}  // namespace igsp

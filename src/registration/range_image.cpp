@@ -1,0 +1,81 @@
+#include "registration/range_image.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace igsp {
+namespace {
+
+// About 1 degree for a scan of a room or a street. Smaller, a direction falls between two points; larger, more stands
+// in the aperture that is near by, and less is found empty.
+constexpr double aperture = 1.5;    // voxels, at the median range
+constexpr double in_front = 4.0;    // voxels: beyond noise, and beyond what two scans see of one grazing surface
+constexpr int min_seen = 3;         // points in the aperture
+constexpr double max_offset = 0.5;  // of their mean from the direction, in apertures: a half disc has 0.42, a rim more
+
+// Farther away it would cost digits and change nothing: lines of sight are parallel to a millionth.
+constexpr double farthest = 1e6;  // of the cloud's size
+
+double largest_distance(PointView points, const Eigen::Vector3d& from) {
+  double squared = 0;
+  for (const Eigen::Vector3d& point : points) squared = std::max(squared, (point - from).squaredNorm());
+  return std::sqrt(squared);
+}
+
+Eigen::Vector3d not_too_far(PointView points, const Eigen::Vector3d& viewpoint) {
+  const double limit = farthest * largest_distance(points, Eigen::Vector3d::Zero()), distance = viewpoint.stableNorm();
+  return distance > limit && limit > 0 ? Eigen::Vector3d(viewpoint * (limit / distance)) : viewpoint;
+}
+
+double median_range(PointView points, const Eigen::Vector3d& viewpoint) {
+  if (points.empty()) return 0;
+  std::vector<double> ranges;
+  ranges.reserve(points.size());
+  for (const Eigen::Vector3d& point : points) ranges.push_back((point - viewpoint).norm());
+  const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
+  std::nth_element(ranges.begin(), middle, ranges.end());
+  return *middle;
+}
+
+}  // namespace
+
+RangeImage::RangeImage(PointView points, const Eigen::Vector3d& viewpoint, double voxel_size)
+    : viewpoint_(not_too_far(points, viewpoint)),
+      aperture_(aperture * voxel_size),
+      tolerance_(in_front * voxel_size),
+      radius_(median_range(points, viewpoint_)),
+      projected_(project(points), aperture_) {
+  ranges_.reserve(points.size());
+  for (const std::uint32_t i : projected_.index) ranges_.push_back((points[i] - viewpoint_).norm());
+}
+
+Points RangeImage::project(PointView points) const {
+  Points projected;
+  projected.reserve(points.size());
+  for (const Eigen::Vector3d& point : points) {
+    const Eigen::Vector3d ray = point - viewpoint_;
+    const double range = ray.norm();
+    projected.push_back(range > 0 ? on_sphere(ray, range) : viewpoint_);
+  }
+  return projected;
+}
+
+RangeImage::Sight RangeImage::look_at(const Eigen::Vector3d& point) const {
+  const Eigen::Vector3d ray = point - viewpoint_;
+  const double range = ray.norm();
+  if (!(range > 0)) return Sight::out_of_view;
+  const Eigen::Vector3f direction = on_sphere(ray, range).cast<float>();
+  double nearest = std::numeric_limits<double>::infinity();
+  Eigen::Vector3f offset = Eigen::Vector3f::Zero();
+  int seen = 0;
+  projected_.visit_sphere(direction, static_cast<float>(aperture_), [&](std::uint32_t i, float) {
+    nearest = std::min(nearest, ranges_[i]);
+    offset += Eigen::Vector3f(projected_.x[i], projected_.y[i], projected_.z[i]) - direction;
+    ++seen;
+  });
+  if (seen < min_seen || offset.norm() > max_offset * aperture_ * seen) return Sight::out_of_view;
+  return range < nearest - tolerance_ ? Sight::empty : Sight::possible;
+}
+
+}  // namespace igsp
