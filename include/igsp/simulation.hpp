@@ -23,8 +23,8 @@ struct SimulatedScan {
   operator Scan() const { return {points, viewpoint}; }
 
   Points points;
-  std::optional<Eigen::Vector3d> viewpoint;  ///< the origin; none where the points lie on no surface
   Transformation world_from_scanner = Transformation::Identity();
+  std::optional<Eigen::Vector3d> viewpoint;  ///< the origin; none where the points lie on no surface
 };
 
 /// Scans of a simulated "park" or "indoor" by a levelled terrestrial scanner of unknown yaw, or of an "object" of 0.2 m

@@ -41,7 +41,7 @@ std::vector<SimulatedScan> simulate(std::string_view scene_name, const Simulatio
     std::optional<Eigen::Vector3d> viewpoint;
     if (scene.sensor != simulation::Sensor::none) viewpoint = Eigen::Vector3d::Zero();
     scans.push_back({simulation::scan(scene, pose, options.points, options.noise.value_or(scene.noise), of_station),
-                     viewpoint, pose});
+                     pose, viewpoint});
   }
   return scans;
 }
