@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "igsp/point_cloud.hpp"
 
@@ -20,8 +21,14 @@ enum class FileFormat {
   text
 };
 
+struct ReadOptions {
+  /// Text files: which columns are x, y and z, by their names or their numbers from 1. Empty: found by their names
+  /// (X [m], Easting, Height, ...), else the first three.
+  std::vector<std::string> columns;
+};
+
 /// Reads the points of a file in chunks: PLY (ascii, both byte orders), PCD (ascii, binary, binary_compressed) and
-/// text (XYZ, TXT, CSV, PTS). The content decides between them, for text the extension. Properties other than x, y, z
+/// text (XYZ, TXT, CSV, ASC, PTS and the like). The content decides between them, for text the extension. Properties other than x, y, z
 /// are skipped. Non-finite points are dropped and counted. A file that declares 0 points is an empty cloud, no error.
 /// Memory is bounded by a chunk whatever the file's size, save for PCD binary_compressed, whose body (at most 4 GiB)
 /// can only be decompressed whole.
@@ -30,7 +37,8 @@ class PointReader {
   static constexpr std::size_t default_chunk = 65536;
 
   /// Opens the file and reads its header. Throws FileError (path and line or byte offset).
-  explicit PointReader(const std::filesystem::path& path, std::size_t points_per_chunk = default_chunk);
+  explicit PointReader(const std::filesystem::path& path, std::size_t points_per_chunk = default_chunk,
+                       const ReadOptions& options = {});
   ~PointReader();
   PointReader(PointReader&&) noexcept;
   PointReader& operator=(PointReader&&) noexcept;
@@ -57,14 +65,14 @@ struct LoadedCloud {
 };
 
 /// The whole cloud. Throws FileError.
-LoadedCloud read_points(const std::filesystem::path& path);
+LoadedCloud read_points(const std::filesystem::path& path, const ReadOptions& options = {});
 
 struct WriteOptions {
   std::optional<FileFormat> format;  ///< by default the one that the extension stands for
   bool single_precision = false;     ///< coordinates rounded to float
 };
 
-/// The format that a path's extension stands for: .ply and .pcd binary, .xyz, .txt, .csv and .pts text. Throws
+/// The format that a path's extension stands for: .ply and .pcd binary, .xyz, .txt, .csv, .asc, .pts and the like text. Throws
 /// FileError otherwise.
 FileFormat format_of(const std::filesystem::path& path);
 

@@ -34,10 +34,24 @@ FormatFamily family_of(const std::filesystem::path& path) {
   const std::string extension = extension_of(path);
   if (extension == ".ply") return FormatFamily::ply;
   if (extension == ".pcd") return FormatFamily::pcd;
-  for (const auto text : {".xyz", ".txt", ".csv", ".pts"}) {
+  for (const auto text : {".xyz", ".txt", ".csv", ".pts", ".asc", ".tsv", ".xyzn", ".xyzrgb"}) {
     if (extension == text) return FormatFamily::text;
   }
   return FormatFamily::unknown;
+}
+
+std::string unknown_format_of(const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
+  for (const auto mesh : {".obj", ".off", ".stl", ".gltf", ".glb", ".fbx", ".3ds", ".dxf", ".wrl"}) {
+    if (extension == mesh) return extension + " is a mesh, which igsp does not read: save its vertices as .ply";
+  }
+  for (const auto data : {".vtk", ".vtp", ".vtu"}) {
+    if (extension == data) return extension + " is not read: save the points as .ply, for instance in ParaView";
+  }
+  for (const auto raw : {".fls", ".zfs", ".rcp", ".rcs", ".rdbx", ".rxp", ".pod", ".cl3", ".bin"}) {
+    if (extension == raw) return extension + " is a format of one vendor: export the points as .e57, .las or .ply";
+  }
+  return "unknown kind of file; the extension must be one of .ply, .pcd, .xyz, .txt, .csv, .asc, .pts";
 }
 
 }  // namespace io
@@ -53,8 +67,7 @@ FileFormat format_of(const std::filesystem::path& path) {
     case io::FormatFamily::unknown:
       break;
   }
-  throw FileError(path.string() +
-                  ": unknown kind of file; the extension must be one of .ply, .pcd, .xyz, .txt, .csv, .pts");
+  throw FileError(path.string() + ": " + io::unknown_format_of(path));
 }
 
 }  // namespace igsp

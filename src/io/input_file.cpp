@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -10,6 +11,12 @@
 #include "igsp/errors.hpp"
 
 namespace igsp::io {
+
+namespace {
+
+constexpr std::size_t utf8_bytes_per_unit = 3;  // at most, of UTF-16; two units of a pair take 4
+
+}  // namespace
 
 InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
   std::error_code error;
@@ -34,10 +41,66 @@ bool InputFile::refill() {
   buffer_offset_ += begin_;
   end_ -= begin_;
   begin_ = 0;
+  if (encoding_ != Encoding::bytes) return refill_from_utf16();
   const auto room = static_cast<std::streamsize>(buffer_.size() - end_);
   const std::streamsize got = room > 0 ? stream_.rdbuf()->sgetn(buffer_.data() + end_, room) : 0;
   if (got > 0) end_ += static_cast<std::size_t>(got);
   return got > 0;
+}
+
+bool InputFile::refill_from_utf16() {
+  constexpr std::size_t most_units = 16384;
+  std::array<char, 2 * most_units> raw;
+  const std::size_t units = std::min(most_units, (buffer_.size() - end_) / utf8_bytes_per_unit);
+  const auto got = static_cast<std::size_t>(stream_.rdbuf()->sgetn(raw.data(), static_cast<long>(2 * units)));
+  const bool little = encoding_ == Encoding::utf16_little_endian;
+  const auto unit = [&](std::size_t i) {
+    const auto first = static_cast<unsigned char>(raw[i]), second = static_cast<unsigned char>(raw[i + 1]);
+    return static_cast<char32_t>(little ? second << 8 | first : first << 8 | second);
+  };
+  const std::size_t before = end_;
+  for (std::size_t i = 0; i + 1 < got; i += 2) {
+    char32_t character = unit(i);
+    if (character >= 0xD800 && character < 0xDC00 && i + 3 < got) {  // the first half of a pair
+      character = 0x10000 + ((character - 0xD800) << 10) + (unit(i += 2) & 0x3FF);
+    } else if (character >= 0xD800 && character < 0xDC00 && i > 0 && got == 2 * units) {
+      stream_.rdbuf()->pubseekoff(-2, std::ios::cur);  // its other half comes next
+      break;
+    }
+    append_utf8(character);
+  }
+  return end_ > before;
+}
+
+void InputFile::append_utf8(char32_t character) {
+  const unsigned more = character < 0x80 ? 0 : character < 0x800 ? 1 : character < 0x10000 ? 2 : 3;
+  constexpr unsigned leads[] = {0x00, 0xC0, 0xE0, 0xF0};
+  buffer_[end_++] = static_cast<char>(leads[more] | character >> 6 * more);
+  for (unsigned i = more; i-- > 0;) buffer_[end_++] = static_cast<char>(0x80 | (character >> 6 * i & 0x3F));
+}
+
+void InputFile::detect_encoding() {
+  constexpr std::size_t sample = 4096;
+  const std::string_view start = peek(sample);
+  const auto is_zero = [&](std::size_t i) { return i < start.size() && start[i] == '\0'; };
+  if (start.starts_with("\xFF\xFE") || (start.size() >= 4 && !is_zero(0) && is_zero(1) && !is_zero(2) && is_zero(3))) {
+    encoding_ = Encoding::utf16_little_endian;
+  } else if (start.starts_with("\xFE\xFF") ||
+             (start.size() >= 4 && is_zero(0) && !is_zero(1) && is_zero(2) && !is_zero(3))) {
+    encoding_ = Encoding::utf16_big_endian;
+  }
+  if (encoding_ != Encoding::bytes) {
+    begin_ = end_ = 0;
+    buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(buffer_size, 2 * size_ + utf8_bytes_per_unit)));
+    stream_.rdbuf()->pubseekpos(0);
+  }
+  if (peek(3) == "\xEF\xBB\xBF") skip(3);
+  const std::string_view text = peek(sample);
+  const std::size_t first_break = text.find_first_of("\r\n");
+  const std::size_t behind = text.find_first_not_of('\r', first_break);
+  if (first_break < text.size() && text[first_break] == '\r' && behind < text.size() && text[behind] != '\n') {
+    line_break_ = '\r';
+  }
 }
 
 std::string_view InputFile::peek(std::size_t count) {
@@ -56,9 +119,11 @@ std::string_view InputFile::read(std::size_t count) {
 bool InputFile::read_line(std::string_view& line) {
   std::size_t searched = 0;
   const void* newline = nullptr;
-  while (!(newline = std::memchr(buffer_.data() + begin_ + searched, '\n', end_ - begin_ - searched))) {
+  while (!(newline = std::memchr(buffer_.data() + begin_ + searched, line_break_, end_ - begin_ - searched))) {
     searched = end_ - begin_;
-    if (searched == buffer_.size()) {
+    const bool full =
+        encoding_ == Encoding::bytes ? searched == buffer_.size() : buffer_.size() - searched < utf8_bytes_per_unit;
+    if (full) {
       fail_at_line(line_ + 1, fmt::format("the line is longer than {} bytes", buffer_size));
     }
     if (!refill()) break;
@@ -69,7 +134,8 @@ bool InputFile::read_line(std::string_view& line) {
   line_begin_ = begin_;
   begin_ = static_cast<std::size_t>(last - buffer_.data()) + (newline ? 1 : 0);
   ++line_;
-  if (last > first && last[-1] == '\r') --last;
+  while (last > first && last[-1] == '\r') --last;
+  line_end_ = {last, static_cast<std::size_t>(buffer_.data() + begin_ - last)};
   line = {first, static_cast<std::size_t>(last - first)};
   return true;
 }
@@ -83,7 +149,7 @@ bool InputFile::skip_line() {
   if (peek(1).empty()) return false;
   ++line_;
   do {
-    if (const void* newline = std::memchr(buffer_.data() + begin_, '\n', end_ - begin_)) {
+    if (const void* newline = std::memchr(buffer_.data() + begin_, line_break_, end_ - begin_)) {
       begin_ = static_cast<std::size_t>(static_cast<const char*>(newline) - buffer_.data()) + 1;
       return true;
     }
@@ -106,7 +172,8 @@ void InputFile::skip(std::uint64_t count) {
 
 void InputFile::require_records(std::uint64_t count, std::uint64_t bytes_each, std::string_view what) const {
   if (bytes_each == 0 || count <= remaining() / bytes_each) return;
-  fail_at_offset(offset(), fmt::format("the header declares {} {} of at least {} bytes each, but only {} bytes follow",
+  fail_at_offset(offset(), fmt::format("the header declares {} {} of at least {} bytes each, but only {} bytes follow: "
+                                       "cut short, or the count is wrong",
                                        count, what, bytes_each, remaining()));
 }
 

@@ -30,8 +30,13 @@ class InputFile {
   std::string_view peek(std::size_t count);
   /// Consumes exactly `count` bytes, count <= buffer_size.
   std::string_view read(std::size_t count);
-  /// The next line without its line end (also not the \r of Windows); false at the end of the file.
+  /// To be called before anything is read: passes over a byte order mark, hands out UTF-16 as UTF-8, and takes \r for
+  /// the line end where the first line ends so.
+  void detect_encoding();
+  /// The next line without its line end (\n, \r\n or, if detect_encoding saw it, \r); false at the end of the file.
   bool read_line(std::string_view& line);
+  /// What ended the line read last: nothing at the end of the file. Valid as long as that line.
+  std::string_view line_end() const { return line_end_; }
   /// Takes back the line read last; only directly after read_line.
   void unread_line();
   /// Skips a line of any length; false at the end of the file.
@@ -48,8 +53,13 @@ class InputFile {
   [[noreturn]] void fail_at_offset(std::uint64_t offset, std::string_view message) const;
 
  private:
+  enum class Encoding { bytes, utf16_little_endian, utf16_big_endian };
+
   /// Moves what is left to the front and fills up; false when the file has no more bytes.
   bool refill();
+  /// Reads UTF-16 and appends it as UTF-8.
+  bool refill_from_utf16();
+  void append_utf8(char32_t character);
   [[noreturn]] void fail_truncated(std::uint64_t missing) const;
 
   std::filesystem::path path_;
@@ -60,6 +70,9 @@ class InputFile {
   std::uint64_t buffer_offset_ = 0;  // of buffer_[0] in the file
   std::uint64_t line_ = 0;
   std::size_t line_begin_ = 0;  // of the line read last, in the buffer
+  std::string_view line_end_;
+  char line_break_ = '\n';
+  Encoding encoding_ = Encoding::bytes;
 };
 
 }  // namespace igsp::io

@@ -2,11 +2,15 @@
 
 namespace igsp::io {
 
+std::vector<std::string_view> split(std::string_view line, char separator) {
+  std::vector<std::string_view> values;
+  Tokenizer tokens(line, separator);
+  for (std::string_view value; tokens.next(value);) values.push_back(value);
+  return values;
+}
+
 std::vector<std::string_view> split_words(std::string_view line) {
-  std::vector<std::string_view> words;
-  Tokenizer tokens(line, ' ');
-  for (std::string_view word; tokens.next(word);) words.push_back(word);
-  return words;
+  return split(line, ' ');
 }
 
 std::string in_quotes(std::string_view token) {

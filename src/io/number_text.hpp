@@ -26,8 +26,8 @@ inline void append_number(std::string& text, std::floating_point auto value) {
   text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
 }
 
-/// Cuts a line into its values: at every `separator` with the blanks around it removed, or at runs of blanks if
-/// `separator` is a blank.
+/// Cuts a line into its values: at every `separator` outside double quotes with the blanks around it removed, or at
+/// runs of blanks if `separator` is a blank.
 class Tokenizer {
  public:
   Tokenizer(std::string_view line, char separator) : rest_(line), separator_(separator) { skip_blanks(); }
@@ -40,7 +40,8 @@ class Tokenizer {
       token = rest_.substr(0, length);
       rest_.remove_prefix(length);
     } else {
-      length = std::min(rest_.find(separator_), rest_.size());
+      const std::size_t closing = rest_.front() == '"' ? rest_.find('"', 1) : rest_.npos;
+      length = std::min(rest_.find(separator_, closing == rest_.npos ? 0 : closing), rest_.size());
       token = rest_.substr(0, length);
       while (!token.empty() && is_blank(token.back())) token.remove_suffix(1);
       rest_.remove_prefix(std::min(length + 1, rest_.size()));
@@ -53,12 +54,16 @@ class Tokenizer {
 
  private:
   void skip_blanks() {
-    while (!rest_.empty() && is_blank(rest_.front())) rest_.remove_prefix(1);
+    while (!rest_.empty() && is_padding(rest_.front())) rest_.remove_prefix(1);
   }
+  bool is_padding(char c) const { return c == ' ' || (c == '\t' && separator_ != '\t'); }
 
   std::string_view rest_;
   char separator_;
 };
+
+/// All values of a line.
+std::vector<std::string_view> split(std::string_view line, char separator);
 
 /// All blank-separated words of a header line.
 std::vector<std::string_view> split_words(std::string_view line);

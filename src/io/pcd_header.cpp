@@ -57,7 +57,8 @@ std::uint64_t parse_count(const InputFile& file, const Entry& entry, std::string
 
 void require_one_per_field(const InputFile& file, const Entry& entry, std::size_t fields) {
   if (entry.values.size() != fields) {
-    file.fail_at_line(entry.line, fmt::format("{} values for {} fields", entry.values.size(), fields));
+    file.fail_at_line(entry.line,
+                      fmt::format("{} values for {} fields: write one for each", entry.values.size(), fields));
   }
 }
 
@@ -71,7 +72,8 @@ std::vector<PcdField> parse_fields(const InputFile& file, const Entries& entries
   for (std::size_t i = 0; i < fields.size(); ++i) {
     fields[i].size = parse_count(file, sizes, sizes.values[i]);
     if (types.values[i].size() != 1) file.fail_at_line(types.line, "unknown type " + in_quotes(types.values[i]));
-    fields[i].type = types.values[i][0];
+    const char type = types.values[i][0];
+    fields[i].type = type >= 'a' && type <= 'z' ? static_cast<char>(type - 'a' + 'A') : type;
   }
   if (const auto found = entries.find("COUNT"); found != entries.end()) {
     const Entry& counts = found->second;
@@ -104,8 +106,10 @@ std::uint64_t parse_points(const InputFile& file, const Entries& entries) {
   if (!width) return *points;
   std::uint64_t product = 0;
   if (__builtin_mul_overflow(*width, height, &product) || (points && *points != product)) {
-    file.fail_at_line(fmt::format("POINTS {} is not WIDTH {} x HEIGHT {}",
-                                  points ? fmt::to_string(*points) : "(missing)", *width, height));
+    file.fail_at_line(
+        fmt::format("POINTS {} is not WIDTH {} x HEIGHT {}: correct the wrong one (WIDTH = POINTS, HEIGHT "
+                    "= 1 for a cloud without rows)",
+                    points ? fmt::to_string(*points) : "(missing)", *width, height));
   }
   return product;
 }
@@ -120,10 +124,23 @@ FileFormat parse_data(const InputFile& file, const Entries& entries) {
   file.fail_at_line(data.line, "expected 'DATA ascii', 'DATA binary' or 'DATA binary_compressed'");
 }
 
+/// 0.7, .7 and older; what calls itself 1.0 or more is made by other rules.
+void require_version(const InputFile& file, const Entries& entries) {
+  const auto found = entries.find("VERSION");
+  if (found == entries.end() || found->second.values.empty()) return;
+  const auto version = parse_number<double>(found->second.values[0]);
+  if (version && *version < 1.0) return;
+  file.fail_at_line(found->second.line,
+                    fmt::format("PCD version {} is not supported, 0.7 and older are: export the cloud "
+                                "as PCD 0.7 or PLY",
+                                in_quotes(found->second.values[0])));
+}
+
 }  // namespace
 
 PcdHeader read_pcd_header(InputFile& file) {
   const Entries entries = read_entries(file);
+  require_version(file, entries);
   PcdHeader header;
   header.format = parse_data(file, entries);
   header.fields = parse_fields(file, entries);

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <lzf.h>
 
 #include <algorithm>
 #include <cstring>
+#include <ranges>
 
 #include "io/pcd_header.hpp"
 #include "io/point_body.hpp"
@@ -12,10 +14,7 @@ namespace igsp::io {
 namespace {
 
 Column column_of(const PcdField& field) {
-  if (field.name == "x") return Column::x;
-  if (field.name == "y") return Column::y;
-  if (field.name == "z") return Column::z;
-  return Column::skip;
+  return coordinate_named(field.name);
 }
 
 void require_coordinates(const InputFile& file, const PcdHeader& header) {
@@ -23,7 +22,10 @@ void require_coordinates(const InputFile& file, const PcdHeader& header) {
     const char name = "xyz"[static_cast<std::size_t>(wanted)];
     const auto is_wanted = [&](const PcdField& field) { return column_of(field) == wanted; };
     const auto found = std::ranges::count_if(header.fields, is_wanted);
-    if (found != 1) file.fail_at_line(fmt::format("{} fields named '{}' in the header, expected one", found, name));
+    if (found != 1) {
+      file.fail_at_line(fmt::format("{} fields named '{}' in the header, expected one; it has {}", found, name,
+                                    fmt::join(header.fields | std::views::transform(&PcdField::name), ", ")));
+    }
     const auto count = std::ranges::find_if(header.fields, is_wanted)->count;
     if (count != 1) file.fail_at_line(fmt::format("field '{}' has COUNT {}, expected 1", name, count));
   }

@@ -226,5 +226,21 @@ TEST(PcdReader, AnEndlessHeaderIsGivenUp) {
   expect_unreadable("a.pcd", lines, {"line", "1 MiB"});
 }
 
+TEST(PcdReader, CapitalNamesSmallTypesAndAByteOrderMark) {
+  const std::string body = "1 2 3\n-4 5.5 6\n";
+  EXPECT_EQ(read_content("a.pcd", Header{.fields = "X Y Z"}("ascii") + body).points, two_points);
+  EXPECT_EQ(read_content("a.pcd", Header{.type = "f f f"}("ascii") + body).points, two_points);
+  EXPECT_EQ(read_content("a.pcd", "\xEF\xBB\xBF" + Header{}("ascii") + body).points, two_points);
+}
+
+TEST(PcdReader, RefusalsSayWhatWouldHelp) {
+  expect_unreadable("a.pcd", Header{}("ascii") + "1,2,3\n-4,5.5,6\n", {"line 12", "replace the commas"});
+  std::string later = Header{}("ascii") + "1 2 3\n-4 5.5 6\n";
+  later.replace(later.find("VERSION 0.7"), 11, "VERSION 3.0");
+  expect_unreadable("a.pcd", later, {"line 2", "'3.0' is not supported", "0.7"});
+  expect_unreadable("a.pcd", Header{.width = "3"}("ascii"), {"POINTS 2 is not WIDTH 3", "WIDTH = POINTS"});
+  expect_unreadable("a.pcd", Header{.fields = "a b c"}("ascii"), {"'x'", "it has a, b, c"});
+}
+
 }  // namespace
 }  // namespace igsp::io

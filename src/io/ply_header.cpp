@@ -17,12 +17,12 @@ using Words = std::vector<std::string_view>;
 
 ScalarType parse_type(const InputFile& file, std::string_view name) {
   static constexpr std::pair<std::string_view, ScalarType> types[] = {
-      {"char", ScalarType::int8},      {"int8", ScalarType::int8},       {"uchar", ScalarType::uint8},
-      {"uint8", ScalarType::uint8},    {"short", ScalarType::int16},     {"int16", ScalarType::int16},
-      {"ushort", ScalarType::uint16},  {"uint16", ScalarType::uint16},   {"int", ScalarType::int32},
-      {"int32", ScalarType::int32},    {"uint", ScalarType::uint32},     {"uint32", ScalarType::uint32},
-      {"float", ScalarType::float32},  {"float32", ScalarType::float32}, {"double", ScalarType::float64},
-      {"float64", ScalarType::float64}};
+      {"char", ScalarType::int8},       {"int8", ScalarType::int8},       {"uchar", ScalarType::uint8},
+      {"uint8", ScalarType::uint8},     {"short", ScalarType::int16},     {"int16", ScalarType::int16},
+      {"ushort", ScalarType::uint16},   {"uint16", ScalarType::uint16},   {"int", ScalarType::int32},
+      {"int32", ScalarType::int32},     {"uint", ScalarType::uint32},     {"uint32", ScalarType::uint32},
+      {"float", ScalarType::float32},   {"float32", ScalarType::float32}, {"double", ScalarType::float64},
+      {"float64", ScalarType::float64}, {"int64", ScalarType::int64},     {"uint64", ScalarType::uint64}};
   for (const auto& [known, type] : types) {
     if (name == known) return type;
   }

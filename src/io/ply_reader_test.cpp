@@ -228,5 +228,27 @@ TEST(PlyReader, AnEndlessHeaderIsGivenUp) {
   expect_unreadable("a.ply", lines, {"line", "1 MiB"});
 }
 
+TEST(PlyReader, CapitalNamesLongIntegersAndOldLineEnds) {
+  const Points two = {{1, 2, 3}, {-4, 5.5, 6}};
+  const std::string capital = "element vertex 2\nproperty float X\nproperty float Y\nproperty float Z\n";
+  std::string content = ply("ascii", capital, "1 2 3\n-4 5.5 6\n");
+  EXPECT_EQ(read_content("a.ply", content).points, two);
+  std::ranges::replace(content, '\n', '\r');
+  EXPECT_EQ(read_content("a.ply", content).points, two);
+  std::string body;
+  for (const auto& point : two)
+    body += bytes_of(std::int64_t{7}) + bytes_of(point.x()) + bytes_of(point.y()) + bytes_of(point.z());
+  const std::string stamped =
+      "element vertex 2\nproperty int64 t\nproperty double x\nproperty double y\nproperty double z\n";
+  EXPECT_EQ(read_content("a.ply", ply("binary_little_endian", stamped, body)).points, two);
+}
+
+TEST(PlyReader, RefusalsSayWhatWouldHelp) {
+  expect_unreadable("a.ply", ply("ascii", vertex(1), "1,2,3\n"), {"line 8", "replace the commas"});
+  expect_unreadable("a.ply", ply("ascii", vertex(1) + vertex(1), "1 2 3\n1 2 3\n"),
+                    {"2 'vertex'", "a file of its own"});
+  expect_unreadable("a.ply", ply("ascii", "element vertex 1\nproperty float u\n", "1\n"), {"'x'", "it has u"});
+}
+
 }  // namespace
 }  // namespace igsp::io

@@ -19,6 +19,10 @@ struct PointBody {
 
 PointBody open_ply(InputFile& file);
 PointBody open_pcd(InputFile& file);
-PointBody open_text(InputFile& file);
+/// `columns` as in ReadOptions.
+PointBody open_text(InputFile& file, const std::vector<std::string>& columns);
+
+/// Any of them, by the content or, for text, the extension.
+PointBody open_body(InputFile& file, const ReadOptions& options);
 
 }  // namespace igsp::io

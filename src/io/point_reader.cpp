@@ -9,40 +9,44 @@
 
 namespace igsp {
 
+namespace io {
+
 namespace {
 
-using io::FormatFamily;
-
 /// What the first bytes are: PCD has no magic of its own, so its first line that is no comment decides.
-FormatFamily family_of_content(io::InputFile& file) {
+FormatFamily family_of_content(InputFile& file) {
   std::string_view start = file.peek(4096);
   if (start.starts_with("ply\n") || start.starts_with("ply\r") || start.starts_with("ply ")) return FormatFamily::ply;
   if (start.starts_with("# .PCD")) return FormatFamily::pcd;
-  while (start.starts_with('#')) start.remove_prefix(std::min(start.find('\n'), start.size() - 1) + 1);
+  while (start.starts_with('#')) start.remove_prefix(std::min(start.find_first_of("\r\n"), start.size() - 1) + 1);
   for (const auto keyword : {"VERSION ", "FIELDS ", "COLUMNS "}) {
     if (start.starts_with(keyword)) return FormatFamily::pcd;
   }
   return FormatFamily::unknown;
 }
 
-io::PointBody open_body(io::InputFile& file) {
+}  // namespace
+
+PointBody open_body(InputFile& file, const ReadOptions& options) {
+  file.detect_encoding();
   const FormatFamily found = family_of_content(file);
-  if (found == FormatFamily::ply) return io::open_ply(file);
-  if (found == FormatFamily::pcd) return io::open_pcd(file);
-  switch (io::family_of(format_of(file.path()))) {
+  if (found == FormatFamily::ply) return open_ply(file);
+  if (found == FormatFamily::pcd) return open_pcd(file);
+  switch (family_of(format_of(file.path()))) {
     case FormatFamily::ply:
       file.fail_at_offset(0, "not a PLY file: it does not start with a line 'ply'");
     case FormatFamily::pcd:
       file.fail_at_offset(0, "not a PCD file: it starts neither with '# .PCD' nor with VERSION");
     default:
-      return io::open_text(file);
+      return open_text(file, options.columns);
   }
 }
 
-}  // namespace
+}  // namespace io
 
 struct PointReader::Implementation {
-  Implementation(const std::filesystem::path& path, std::size_t points_per_chunk) : file(path), body(open_body(file)) {
+  Implementation(const std::filesystem::path& path, std::size_t points_per_chunk, const ReadOptions& options)
+      : file(path), body(io::open_body(file, options)) {
     chunk.limit = points_per_chunk;
   }
 
@@ -51,9 +55,14 @@ struct PointReader::Implementation {
   io::Chunk chunk;
 };
 
-PointReader::PointReader(const std::filesystem::path& path, std::size_t points_per_chunk) {
+PointReader::PointReader(const std::filesystem::path& path, std::size_t points_per_chunk, const ReadOptions& options) {
   if (points_per_chunk == 0) throw InvalidArgument("points_per_chunk = 0 is not in [1, infinity)");
-  implementation_ = std::make_unique<Implementation>(path, points_per_chunk);
+  const auto& columns = options.columns;
+  if (!columns.empty() && columns.size() != 3) {
+    throw InvalidArgument("columns names " + std::to_string(columns.size()) + " columns; it must be three: x, y and z");
+  }
+  if (std::ranges::any_of(columns, &std::string::empty)) throw InvalidArgument("columns holds an empty name");
+  implementation_ = std::make_unique<Implementation>(path, points_per_chunk, options);
 }
 
 PointReader::~PointReader() = default;
@@ -77,8 +86,8 @@ std::size_t PointReader::declared_points() const {
   return implementation_->body.declared_points;
 }
 
-LoadedCloud read_points(const std::filesystem::path& path) {
-  PointReader reader(path);
+LoadedCloud read_points(const std::filesystem::path& path, const ReadOptions& options) {
+  PointReader reader(path, PointReader::default_chunk, options);
   LoadedCloud cloud;
   cloud.format = reader.format();
   cloud.points.reserve(reader.declared_points());

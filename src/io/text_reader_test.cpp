@@ -40,9 +40,8 @@ TEST(TextReader, ALineOfColumnNames) {
   EXPECT_EQ(read_content("a.csv", "\"X\";\"Y\";\"Z\"\r\n1;2;3\r\n-4;5.5;6\r\n").points, two_points);
   EXPECT_EQ(read_content("a.csv", "label,z,intensity,x,y,time\na,3,,1,2\nb,6,7,-4,5.5,8\n").points, two_points);
   EXPECT_EQ(read_content("a.txt", "# a scan\nX Y Z R G B\n1 2 3 0 0 0\n-4 5.5 6 0 0 0\n").points, two_points);
-  expect_unreadable("a.csv", "easting,northing,height\n1,2,3\n", {"line 1", "'x'", "'easting'"});
-  expect_unreadable("a.csv", "x,y,x,z\n1,2,3,4\n", {"line 1", "'x'", "found 2"});
-  expect_unreadable("a.csv", "x,y,z\nx,y,z\n1,2,3\n", {"line 2", "'x'"});
+  EXPECT_EQ(read_content("a.csv", "x,y,z\nm,m,m\n1,2,3\n-4,5.5,6\n").points, two_points);
+  expect_unreadable("a.csv", "x,y,x,z\n1,2,3,4\n", {"line 1", "2 columns named x", "--columns"});
   expect_unreadable("a.csv", "label,z,intensity,x,y\na,3,,1\n", {"line 2", "too few"});
 }
 
@@ -86,10 +85,100 @@ TEST(TextReader, BadLinesNameTheLine) {
 }
 
 /// A decimal comma must never silently become a separator.
-TEST(TextReader, DecimalCommasAreAnError) {
-  expect_unreadable("a.csv", "1,5;2,5;3,5\n", {"line 1", "'1,5' is not a number"});
-  expect_unreadable("a.txt", "1,5 2,5 3,5\n", {"line 1", "'5 2' is not a number"});
-  expect_unreadable("a.txt", "1,5\t2,5\t3,5\n", {"line 1", "is not a number"});
+TEST(TextReader, DecimalCommas) {
+  for (const auto content : {"1,0;2,0;3\n-4;5,5;6\n", "1,0 2,0 3,0\n-4,0 5,5 6\n", "1,0\t2,0\t3,0\n-4,0\t5,5\t6,0\n",
+                             "x;y;z\n1,0;2,0;3,0\n-4,0;5,5;6,0\n", "X\tY\tZ\n1,0\t2,0\t3,0\n-4,0\t5,5\t6,0\n",
+                             "\"x\",\"y\",\"z\"\n\"1,0\",\"2,0\",\"3,0\"\n\"-4,0\",\"5,5\",\"6,0\"\n"}) {
+    EXPECT_EQ(read_content("a.csv", content).points, two_points) << content;
+  }
+  expect_unreadable("a.csv", "x,y,z\n1,0,2,0,3,0\n-4,0,5,5,6,0\n", {"line 2", "6 values under 3 names", "';'"});
+  expect_unreadable("a.txt", "1,0 2,0 3,0\n1.5 2,0 3,0\n1,0 2,0 3,0\n", {"line 1", "is not a number", "decimal mark"});
+}
+
+TEST(TextReader, NamesThatOtherProgramsWrite) {
+  for (const auto names : {"Easting,Northing,Height", "easting,NORTHING,Elevation", "X [m],Y [m],Z [m]",
+                           "X(m),Y(m),Z(m)", "E,N,H", "\"Points:0\",\"Points:1\",\"Points:2\"", "X,Y,Elevation"}) {
+    EXPECT_EQ(read_content("a.csv", std::string(names) + "\n1,2,3\n-4,5.5,6\n").points, two_points) << names;
+  }
+  EXPECT_EQ(read_content("a.txt", "X [m]\tY [m]\tZ [m]\n1\t2\t3\n-4\t5.5\t6\n").points, two_points);
+  EXPECT_EQ(read_content("a.txt", "//R X Y Z\n7 1 2 3\n7 -4 5.5 6\n").points, two_points);
+  EXPECT_EQ(read_content("a.txt", "My scan\n1 2 3\n-4 5.5 6\n").points, two_points);
+  expect_unreadable("a.csv", "Hoch,Rechts,Oben\n1,2,3\n",
+                    {"line 1", "no column named x; the file has Hoch, Rechts, Oben: --columns Hoch,Rechts,Oben"});
+  expect_unreadable("a.csv", "Longitude,Latitude,Height\n1,2,3\n", {"line 1", "degrees", "project"});
+}
+
+TEST(TextReader, ColumnsThatTheCallerNames) {
+  const testing::TemporaryFolder folder;
+  const auto read = [&](std::string_view content, std::vector<std::string> columns) {
+    return read_points(folder.write("a.csv", content), {.columns = std::move(columns)}).points;
+  };
+  EXPECT_EQ(read("Hoch,Rechts,Oben\n2,1,3\n5.5,-4,6\n", {"Rechts", "Hoch", "Oben"}), two_points);
+  EXPECT_EQ(read("rechts [m];hoch [m];oben [m]\n1;2;3\n-4;5,5;6\n", {"Rechts", "Hoch", "Oben"}), two_points);
+  EXPECT_EQ(read("Hoch,Rechts,Oben\n2,1,3\n5.5,-4,6\n", {"2", "1", "3"}), two_points);
+  EXPECT_EQ(read("7 a 3 2 1\n7 b 6 5.5 -4\n", {"5", "4", "3"}), two_points);
+  EXPECT_EQ(read("x,y,z\n0,1,2,3\n0,-4,5.5,6\n", {"2", "3", "4"}), two_points);
+  testing::expect_file_error([&] { read("a,b,c\n1,2,3\n", {"a", "b", "d"}); }, {"line 1", "'d'", "a, b, c"});
+  testing::expect_file_error(
+      [&] {
+        read("1,2,3\n", {"a", "b", "c"});
+      },
+      {"no line of the file names", "--columns 1,2,3"});
+  testing::expect_file_error([&] { read("1,2,3\n", {"1", "2", "4"}); }, {"line 1", "too few"});
+  EXPECT_THROW(read("1,2,3\n", {"1", "2"}), InvalidArgument);
+  EXPECT_THROW(read("1,2,3\n", {"1", "2", ""}), InvalidArgument);
+}
+
+TEST(TextReader, AFirstColumnThatCountsRowsIsNotX) {
+  EXPECT_EQ(read_content("a.txt", "0 1.0 2.0 3.0\n1 -4.0 5.5 6.0\n2 nan 0.0 0.0\n3 nan 0.0 0.0\n").points, two_points);
+  expect_unreadable("a.txt", "7 10 20 30\n8 11 20 30\n9 13 20 30\n10 10 20 30\n", {"line 1", "--columns 2,3,4"});
+  EXPECT_EQ(read_content("a.txt", "0 1 2\n1 1 2\n2 1 2\n3 1 2\n").points.size(), 4u);  // nothing else could be x
+}
+
+TEST(TextReader, BracketsQuotesAndLineEnds) {
+  EXPECT_EQ(read_content("a.txt", "[[ 1. 2. 3.]\n [-4. 5.5 6.]]\n").points, two_points);
+  EXPECT_EQ(read_content("a.txt", "(1, 2, 3)\n(-4, 5.5, 6)\n").points, two_points);
+  EXPECT_EQ(read_content("a.csv", "\"id\",\"x\",\"y\",\"z\"\n\"a, b\",\"1\",\"2\",\"3\"\n\"c\",\"-4\",\"5.5\",\"6\"\n")
+                .points,
+            two_points);
+  EXPECT_EQ(read_content("a.xyz", "1 2 3\r-4 5.5 6\r").points, two_points);
+  EXPECT_EQ(read_content("a.xyz", "1 2 3\r\r\n-4 5.5 6\r\r\n").points, two_points);
+  EXPECT_EQ(read_content("a.asc", "//X Y Z I\n2\n1 2 3 9\n-4 5.5 6 9\n").points, two_points);
+}
+
+std::string utf16(std::string_view text, bool big, bool mark) {
+  std::string bytes = mark ? (big ? "\xFE\xFF" : "\xFF\xFE") : "";
+  for (const char c : text) bytes += big ? std::string{'\0', c} : std::string{c, '\0'};
+  return bytes;
+}
+
+TEST(TextReader, Utf16) {
+  for (const bool big : {false, true}) {
+    for (const bool mark : {false, true}) {
+      EXPECT_EQ(read_content("a.csv", utf16("x;y;z\r\n1;2;3\r\n-4;5,5;6\r\n", big, mark)).points, two_points);
+    }
+  }
+  std::string long_text;
+  for (int i = 0; i < 200000; ++i) long_text += "1.25 2.5 " + std::to_string(i % 7) + ".5\n";
+  EXPECT_EQ(read_content("a.xyz", utf16(long_text, false, true)).points, read_content("a.xyz", long_text).points);
+}
+
+TEST(TextReader, BlocksOfPts) {
+  EXPECT_EQ(read_content("a.pts", "1\n1 2 3 0 0 0 0\n\n1\n-4 5.5 6 0 0 0 0\n").points, two_points);
+  expect_unreadable("a.pts", "1\n1 2 3 0 0 0 0\n3\n-4 5.5 6 0 0 0 0\n", {"line 4", "2 points too early"});
+}
+
+TEST(TextReader, ChemistsFiles) {
+  EXPECT_EQ(read_content("a.xyz", "2\nproduced by a chemist\nC 1 2 3\nH -4 5.5 6\n").points, two_points);
+}
+
+TEST(TextReader, WhatIsNoTextOfPointsSaysWhatItIs) {
+  expect_unreadable("a.asc", "ncols 4\nnrows 2\nxllcorner 0\n1 2 3 4\n5 6 7 8\n", {"line 1", "grid"});
+  expect_unreadable("a.txt", "2\n1\n0 0 0\n", {"line 2", ".ptx"});
+  expect_unreadable("a.txt", "OFF\n1 0 0\n0 0 0\n", {"line 1", "mesh"});
+  expect_unreadable("a.obj", "v 1 2 3\n", {"mesh", ".ply"});
+  expect_unreadable("a.vtk", "# vtk DataFile\n", {".ply"});
+  expect_unreadable("a.txt", std::string("1 2 3\n4 5\0 6\n", 13), {"byte offset 9", "binary"});
 }
 
 }  // namespace

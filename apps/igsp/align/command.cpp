@@ -8,6 +8,7 @@
 
 #include "align/answer.hpp"
 #include "files/cloud_input.hpp"
+#include "files/columns_flag.hpp"
 #include "files/foreign_formats.hpp"
 #include "files/output_file.hpp"
 #include "igsp/align.hpp"
@@ -31,6 +32,7 @@ struct AlignSettings {
   fs::path source, target;
   fs::path aligned, transformation, report, html;  // empty: not wanted
   fs::path initial;                                // empty: no guess
+  ReadOptions read;
   std::int64_t max_points = 20'000'000;
   bool force = false, quiet = false, verbose = false;
   std::shared_ptr<OptionFlags> option_flags;
@@ -157,8 +159,8 @@ int run_align(const AlignSettings& settings) {
   ProgressBar bar(!settings.quiet);
   const ProgressCallback progress = bar.callback();
   const auto max_points = static_cast<std::size_t>(settings.max_points);
-  CloudInput source = read_cloud(settings.source, max_points, "read source", progress);
-  CloudInput target = read_cloud(settings.target, max_points, "read target", progress);
+  CloudInput source = read_cloud(settings.source, max_points, "read source", progress, settings.read);
+  CloudInput target = read_cloud(settings.target, max_points, "read target", progress, settings.read);
   if (!source.whole() && !settings.aligned.empty() && !moves_foreign(settings.source, settings.aligned)) {
     throw InvalidArgument(fmt::format("-o needs all points in memory: {} has {}, --max-points is {}",
                                       source.path.string(), source.total, settings.max_points));
@@ -209,6 +211,7 @@ void add_align_command(CLI::App& app, Command& command) {
       ->type_name("FILE");
   align->add_option("--initial", settings->initial, "start from this target_from_source, 4x4 text, instead of a search")
       ->type_name("FILE");
+  add_columns_flag(*align, settings->read);
   align->add_flag("--force", settings->force, "write -o and --transform also for an estimate that is not registered");
   align
       ->add_option("--max-points", settings->max_points,

@@ -23,15 +23,15 @@ std::string_view name_of(FileFormat format) {
   return "";
 }
 
-std::variant<PointReader, ForeignCloud> open(const std::filesystem::path& path) {
+std::variant<PointReader, ForeignCloud> open(const std::filesystem::path& path, const ReadOptions& options) {
   if (reads_foreign(path)) return open_foreign(path);
   check_not_foreign(path);
-  return PointReader(path);
+  return PointReader(path, PointReader::default_chunk, options);
 }
 
 }  // namespace
 
-CloudFile::CloudFile(const std::filesystem::path& path) : reader_(open(path)) {}
+CloudFile::CloudFile(const std::filesystem::path& path, const ReadOptions& options) : reader_(open(path, options)) {}
 
 PointView CloudFile::next_chunk() {
   return std::visit([](auto& reader) { return reader.next_chunk(); }, reader_);

@@ -14,7 +14,7 @@ namespace igsp::cli {
 class CloudFile {
  public:
   /// Throws FileError.
-  explicit CloudFile(const std::filesystem::path& path);
+  explicit CloudFile(const std::filesystem::path& path, const ReadOptions& options = {});
 
   /// Empty at the end; valid until the next call. Throws FileError.
   PointView next_chunk();

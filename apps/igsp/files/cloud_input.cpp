@@ -55,10 +55,11 @@ void check_extent(const CloudInput& cloud) {
 }  // namespace
 
 CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points, std::string_view stage,
-                      const ProgressCallback& progress) {
-  CloudFile reader(path);
+                      const ProgressCallback& progress, const ReadOptions& options) {
+  CloudFile reader(path, options);
   CloudInput cloud;
   cloud.path = path;
+  cloud.options = options;
   cloud.format = reader.format();
   cloud.bounds = {Eigen::Vector3d::Constant(HUGE_VAL), Eigen::Vector3d::Constant(-HUGE_VAL)};
   ThinnedStream kept(max_points);
@@ -79,7 +80,7 @@ CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points,
 
 Points read_centroids(const CloudInput& cloud, double voxel_size, std::string_view stage,
                       const ProgressCallback& progress) {
-  CloudFile reader(cloud.path);
+  CloudFile reader(cloud.path, cloud.options);
   const Eigen::Vector3d origin = centre_of(cloud.bounds);
   std::size_t read = 0;
   Points centroids = voxel_centroids(

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "igsp/io.hpp"
 #include "igsp/progress.hpp"
 #include "spatial/scale.hpp"
 
@@ -12,6 +13,7 @@ namespace igsp::cli {
 /// A cloud as it came from a file.
 struct CloudInput {
   std::filesystem::path path;
+  ReadOptions options;      ///< as it was read, and is read again
   std::string format;       ///< for people: "PLY, ascii"
   Points points;            ///< all of them, or every n-th if the file holds more than were asked for
   std::size_t total = 0;    ///< finite points in the file
@@ -23,7 +25,7 @@ struct CloudInput {
 /// Reads a cloud in one pass; one of more than `max_points` is thinned to every 2nd, 4th, ... point on the way, so that
 /// memory stays bounded. `stage` is the name of the progress. Throws FileError (also for a cloud without any extent).
 CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points, std::string_view stage,
-                      const ProgressCallback& progress);
+                      const ProgressCallback& progress, const ReadOptions& options = {});
 
 /// Voxel centroids of the whole file, in the file's frame, read in chunks: memory grows with the voxels only.
 Points read_centroids(const CloudInput& cloud, double voxel_size, std::string_view stage,

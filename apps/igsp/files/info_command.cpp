@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "files/cloud_input.hpp"
+#include "files/columns_flag.hpp"
 #include "shell/commands.hpp"
 #include "shell/exit_codes.hpp"
 #include "shell/progress_bar.hpp"
@@ -55,10 +56,15 @@ void print_info(const CloudInput& cloud) {
   fmt::print("  suggested voxel size  {:.4g}\n", voxel_size);
 }
 
-int run_info(const std::vector<fs::path>& paths) {
-  for (const fs::path& path : paths) {
+struct InfoSettings {
+  std::vector<fs::path> paths;
+  ReadOptions read;
+};
+
+int run_info(const InfoSettings& settings) {
+  for (const fs::path& path : settings.paths) {
     ProgressBar bar(true);
-    const CloudInput cloud = read_cloud(path, kept_points, "read", bar.callback());
+    const CloudInput cloud = read_cloud(path, kept_points, "read", bar.callback(), settings.read);
     bar.finish();
     print_info(cloud);
   }
@@ -69,12 +75,13 @@ int run_info(const std::vector<fs::path>& paths) {
 
 void add_info_command(CLI::App& app, Command& command) {
   CLI::App* info = app.add_subcommand("info", "what a point cloud file holds, and the voxel size that suits it");
-  const auto paths = std::make_shared<std::vector<fs::path>>();
-  info->add_option("FILE", *paths, "PLY, PCD or text (XYZ, TXT, CSV, PTS)")->required()->type_name("");
+  const auto settings = std::make_shared<InfoSettings>();
+  info->add_option("FILE", settings->paths, "PLY, PCD or text (XYZ, TXT, CSV, PTS)")->required()->type_name("");
+  add_columns_flag(*info, settings->read);
   info->footer(
       "Example:\n  igsp info scan.ply\n"
       "The voxel size of a pair, one for both clouds, is chosen and printed by `igsp align`.");
-  info->callback([paths, &command] { command = [paths] { return run_info(*paths); }; });
+  info->callback([settings, &command] { command = [settings] { return run_info(*settings); }; });
 }
 
 }  // namespace igsp::cli
