@@ -437,6 +437,16 @@ class SimulateAndInfo(CommandTest):
             self.assertIn(line, printed)
         self.refuses("info", "nowhere.ply", code=3, saying="nowhere.ply")
 
+    def test_any_unit_of_length(self):
+        x, y = np.meshgrid(np.arange(40) * 0.5, np.arange(40) * 0.5)
+        for unit in [1e-40, 1e-10, 1e14, 1e40]:
+            np.savetxt(self.folder / "grid.xyz", np.c_[x.ravel(), y.ravel(), np.zeros(1600)] * unit)
+            self.assertIn(f"spacing               {0.5 * unit:.4g}\n", self.igsp("info", "grid.xyz").stdout)
+        for arguments in [("--voxel-size", "1e39"), ("--initial", self.file("far.txt", "1 0 0 1e50\n0 1 0 0\n0 0 1 0"))]:
+            self.assertIn("not registered", self.igsp("align", self.source, self.target, *arguments, code=1).stdout)
+        np.savetxt(self.folder / "huge.xyz", np.c_[x.ravel(), y.ravel(), np.zeros(1600)] * 1e155)
+        self.refuses("align", "huge.xyz", "huge.xyz", code=2, saying="in magnitude; at most 1e+150")
+
 
 if __name__ == "__main__":
     unittest.main()

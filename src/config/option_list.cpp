@@ -15,12 +15,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Range any() {
   return {-infinity, infinity};
 }
-constexpr Range above(double low) {
-  return {low, infinity, true};
-}
-constexpr Range at_least(double low) {
-  return {low, infinity};
-}
 constexpr Range between(double low, double high) {
   return {low, high};
 }
@@ -111,33 +105,33 @@ constexpr std::array listed{
     TOP(search, "--search", "", any(), "how the starting correspondences are found"),
     TOP(degrees_of_freedom, "--dof", "", either(4, 6), "6, or 4 for levelled scans (yaw and translation)"),
     TOP(threads, "--threads", "", between(0, 1024), "0: all processors; the result does not depend on it"),
-    IN(scale, voxel_size, "--voxel-size", "units of the cloud", at_least(0), "size of the voxel filter and unit of all lengths; 0: chosen from both clouds"),
+    IN(scale, voxel_size, "--voxel-size", "units of the cloud", between(0, 1e150), "size of the voxel filter and unit of all lengths; 0: chosen from both clouds"),
     IN(scale, target_points, "--target-points", "", between(100, 100000000), "voxel centroids aimed at when the size is chosen, geometric mean of both clouds"),
     IN(keypoints, pca_radius, "--pca-radius", "voxels", above_up_to(0, 100), "r_f: sphere of the principal component analysis"),
-    IN(keypoints, suppression_radius, "--suppression-radius", "voxels", above(0), "r_k: non-maximum suppression"),
+    IN(keypoints, suppression_radius, "--suppression-radius", "voxels", above_up_to(0, 1e6), "r_k: non-maximum suppression"),
     IN(keypoints, max_eigenvalue_ratio, "--max-eigenvalue-ratio", "", above_up_to(0, 1), "rho: upper bound of l2/l1 and of l3/l2; 1: no bound"),
-    IN(keypoints, min_neighbours, "--min-neighbours", "", at_least(0), "n_min: a keypoint has more neighbours than this"),
+    IN(keypoints, min_neighbours, "--min-neighbours", "", between(0, 1000000000), "n_min: a keypoint has more neighbours than this"),
     IN(keypoints, min_curvature, "--min-curvature", "", between(0, 0.33), "c_min: smallest surface variation l3 / (l1 + l2 + l3)"),
     IN(descriptor, radius, "--descriptor-radius", "voxels", above_up_to(0, 100), "R: half the side of the Binary Shape Context's grid"),
-    IN(energy, distance_scale, "--distance-scale", "bits", above(0), "bits that one suppression radius of distance weighs: s_ed = this / r_k (Eq. 3)"),
-    IN(energy, weight_changing_rate, "--weight-changing-rate", "iterations", above(0), "m: how slowly the weight moves from feature to distance (Eq. 7)"),
+    IN(energy, distance_scale, "--distance-scale", "bits", above_up_to(0, 1e6), "bits that one suppression radius of distance weighs: s_ed = this / r_k (Eq. 3)"),
+    IN(energy, weight_changing_rate, "--weight-changing-rate", "iterations", above_up_to(0, 1e6), "m: how slowly the weight moves from feature to distance (Eq. 7)"),
     IN(energy, threshold_rule, "--threshold-rule", "", any(), "rule for the mismatch threshold T_cd"),
-    IN(energy, p1, "--p1", "", at_least(0), "first iteration: sigmas below the mean (Eq. 11)"),
-    IN(energy, p2, "--p2", "", above(0), "later: factor of the mean Euclidean distance (Eq. 11)"),
-    IN(energy, p3, "--p3", "", above(0), "later: factor of the mean feature distance (Eq. 11)"),
-    IN(energy, released_p_ed, "--released-p-ed", "", above(0), "released rule: factor of the RMS Euclidean distance"),
-    IN(energy, released_p_fd, "--released-p-fd", "", at_least(0), "released rule: deviations added to the mean feature distance"),
+    IN(energy, p1, "--p1", "", between(0, 1e6), "first iteration: sigmas below the mean (Eq. 11)"),
+    IN(energy, p2, "--p2", "", above_up_to(0, 1e6), "later: factor of the mean Euclidean distance (Eq. 11)"),
+    IN(energy, p3, "--p3", "", above_up_to(0, 1e6), "later: factor of the mean feature distance (Eq. 11)"),
+    IN(energy, released_p_ed, "--released-p-ed", "", above_up_to(0, 1e6), "released rule: factor of the RMS Euclidean distance"),
+    IN(energy, released_p_fd, "--released-p-fd", "", between(0, 1e6), "released rule: deviations added to the mean feature distance"),
     IN(energy, min_threshold, "--min-threshold", "bits", above_up_to(0, 435), "floor of T_cd"),
     IN(hypotheses, candidates_per_keypoint, "--candidates-per-keypoint", "", between(1, 20), "candidates of least feature distance, from both sides"),
     IN(hypotheses, max_candidates, "--max-candidates", "", between(3, 20000), "candidates kept: those that stand out most"),
-    IN(hypotheses, length_tolerance, "--length-tolerance", "voxels", above(0), "two candidates agree when their lengths differ by less than this"),
-    IN(hypotheses, min_length, "--min-length", "voxels", at_least(0), "lengths below this say nothing about agreement"),
+    IN(hypotheses, length_tolerance, "--length-tolerance", "voxels", above_up_to(0, 1e6), "two candidates agree when their lengths differ by less than this"),
+    IN(hypotheses, min_length, "--min-length", "voxels", between(0, 1e6), "lengths below this say nothing about agreement"),
     IN(hypotheses, max_frame_angle_rad, "--max-frame-angle-rad", "rad", above_up_to(0, 3.1416), "two candidates agree when the rotations of their frames differ by less than this"),
     IN(hypotheses, max_proposed, "--max-proposed", "", between(1, 1000), "hypotheses screened by matching again in a common frame"),
     IN(hypotheses, max_refined, "--max-refined", "", between(1, 1000), "hypotheses refined and ranked"),
     IN(convergence, max_iterations, "--max-iterations", "", between(1, 10000), "the loop ends here at the latest"),
     IN(convergence, rotation_tolerance_rad, "--rotation-tolerance-rad", "rad", between(0, 3.14), "converged when the rotation step is below this ..."),
-    IN(convergence, translation_tolerance, "--translation-tolerance", "voxels", at_least(0), "... and the step of the keypoint centroid is below this"),
+    IN(convergence, translation_tolerance, "--translation-tolerance", "voxels", between(0, 1e6), "... and the step of the keypoint centroid is below this"),
     IN(refinement, enabled, "--refinement", "", any(), "point-to-plane refinement on the dense clouds after the loop"),
 };
 // clang-format on

@@ -200,8 +200,8 @@ TEST(OptionValueText, ReadsBackTheSameNumber) {
   EXPECT_TRUE(rc::check([](double value) {
     Options options;
     const double positive = std::abs(value) + 1e-6;
-    assign_text(options, find("energy.p2"), to_string(OptionValue(positive)));
-    RC_ASSERT(options.energy.p2 == positive);
+    assign_text(options, find("scale.voxel_size"), to_string(OptionValue(positive)));
+    RC_ASSERT(options.scale.voxel_size == positive);
   }));
 }
 

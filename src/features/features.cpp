@@ -7,9 +7,11 @@
 #include "features/bsc.hpp"
 #include "features/keypoints.hpp"
 #include "features/reference_frame.hpp"
+#include "features/scale_lengths.hpp"
 #include "igsp/errors.hpp"
 #include "spatial/scale.hpp"
 #include "spatial/scatter_filter.hpp"
+#include "spatial/unit_of_length.hpp"
 #include "spatial/voxel_grid.hpp"
 
 namespace igsp {
@@ -40,6 +42,14 @@ void describe_keypoints(const PointGrid& grid, const Options& options, const Sta
                   [&](double share) { clock.report(share); });
 }
 
+// Where single precision is at home, and back.
+Features extract_in_unit(double unit, const Scan& scan, Options options, const ProgressCallback& progress) {
+  options.scale.voxel_size /= unit;
+  Features features = extract_features({in_unit(scan.points, unit), in_unit(scan.viewpoint, unit)}, options, progress);
+  scale_lengths(features, unit);
+  return features;
+}
+
 }  // namespace
 
 Features extract_features(const Scan& scan, const Options& options, const ProgressCallback& progress) {
@@ -51,6 +61,9 @@ Features extract_features(const Scan& scan, const Options& options, const Progre
   features.cloud_points = cloud.size();
   clock.start("voxel grid");
   const Bounds bounds = bounds_of(cloud, "cloud");
+  if (const double unit = unit_of_length(bounds, bounds, options.scale.voxel_size); unit != 1) {
+    return extract_in_unit(unit, scan, options, progress);
+  }
   features.voxel_size = choose_voxel_size(cloud, cloud, options.scale);
   features.origin = centre_of(bounds);
   if (scan.viewpoint) features.viewpoint = *scan.viewpoint - features.origin;

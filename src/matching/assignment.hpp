@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +15,8 @@ inline constexpr std::int64_t assignment_units_per_bit = std::int64_t{1} << 20;
 /// Rounds to the nearest unit. Compare costs with the threshold after this, not before: `cost < threshold` must hold
 /// between the integers.
 inline std::int64_t to_assignment_units(double bits) {
-  return std::llround(bits * static_cast<double>(assignment_units_per_bit));
+  constexpr double most = 0x1p62;  // more bits than any threshold is allowed
+  return std::llround(std::min(bits * static_cast<double>(assignment_units_per_bit), most));
 }
 inline double bits_from_assignment_units(std::int64_t units) {
   return static_cast<double>(units) / static_cast<double>(assignment_units_per_bit);

@@ -6,9 +6,11 @@
 #include <cmath>
 
 #include "registration/pose_assessment.hpp"
+#include "registration/scale_lengths.hpp"
 #include "registration/search.hpp"
 #include "registration/verdict.hpp"
 #include "spatial/scale.hpp"
+#include "spatial/unit_of_length.hpp"
 
 namespace igsp {
 namespace {
@@ -139,22 +141,74 @@ Result align_points(const Scan& source, const Scan& target, const Transformation
 
 }  // namespace
 
+namespace {
+
+std::optional<Transformation> guess_in_unit(const Transformation* initial, double unit) {
+  if (!initial) return std::nullopt;
+  Transformation scaled = *initial;
+  scaled.translation() = in_unit(initial->translation(), unit, "the translation of the initial guess");
+  return scaled;
+}
+
+Options options_in_unit(Options options, double unit) {
+  options.scale.voxel_size /= unit;
+  return options;
+}
+
+// Both clouds where single precision is at home, and the answer in the caller's unit again.
+Result align_scans(const Scan& source, const Scan& target, const Transformation* initial, const Options& options,
+                   const ProgressCallback& progress) {
+  validate(options);
+  const double unit =
+      unit_of_length(bounds_of(source.points, "source"), bounds_of(target.points, "target"), options.scale.voxel_size);
+  if (unit == 1) return align_points(source, target, initial, options, progress);
+  const Points source_points = in_unit(source.points, unit), target_points = in_unit(target.points, unit);
+  const auto guess = guess_in_unit(initial, unit);
+  Result result =
+      align_points({source_points, in_unit(source.viewpoint, unit)}, {target_points, in_unit(target.viewpoint, unit)},
+                   guess ? &*guess : nullptr, options_in_unit(options, unit), progress);
+  scale_lengths(result, unit);
+  return result;
+}
+
+Result align_extracted(const Features& source, const Features& target, const Transformation* initial,
+                       const Options& options, const ProgressCallback& progress) {
+  validate(options);
+  check_compatible(source, target);
+  const auto local_bounds = [](const Features& features) {
+    return features.points.empty() ? Bounds{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}
+                                   : bounds_of(features.points, "features");
+  };
+  const double unit = unit_of_length(local_bounds(source), local_bounds(target), target.voxel_size);
+  if (unit == 1) return align_features(source, target, initial, options, progress);
+  Features scaled_source = source, scaled_target = target;
+  scale_lengths(scaled_source, 1 / unit);
+  scale_lengths(scaled_target, 1 / unit);
+  const auto guess = guess_in_unit(initial, unit);
+  Result result =
+      align_features(scaled_source, scaled_target, guess ? &*guess : nullptr, options_in_unit(options, unit), progress);
+  scale_lengths(result, unit);
+  return result;
+}
+
+}  // namespace
+
 Result align(const Scan& source, const Scan& target, const Options& options, const ProgressCallback& progress) {
-  return align_points(source, target, nullptr, options, progress);
+  return align_scans(source, target, nullptr, options, progress);
 }
 
 Result align(const Scan& source, const Scan& target, const Transformation& initial, const Options& options,
              const ProgressCallback& progress) {
-  return align_points(source, target, &initial, options, progress);
+  return align_scans(source, target, &initial, options, progress);
 }
 
 Result align(const Features& source, const Features& target, const Options& options, const ProgressCallback& progress) {
-  return align_features(source, target, nullptr, options, progress);
+  return align_extracted(source, target, nullptr, options, progress);
 }
 
 Result align(const Features& source, const Features& target, const Transformation& initial, const Options& options,
              const ProgressCallback& progress) {
-  return align_features(source, target, &initial, options, progress);
+  return align_extracted(source, target, &initial, options, progress);
 }
 
 }  // namespace igsp

@@ -1,6 +1,7 @@
 #include "spatial/point_grid.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace igsp {
 namespace {
@@ -8,6 +9,7 @@ namespace {
 // Sparse clouds get larger cells instead of more of them: empty cells cost memory and the time to fill it.
 constexpr double max_cells_per_point = 20;
 constexpr double min_max_cells = 1e5;
+constexpr double least_cell = 1e-9;  // of the extent
 
 }  // namespace
 
@@ -19,7 +21,8 @@ PointGrid::PointGrid(PointView points, double wanted_cell_size) : index(points.s
     max = max.cwiseMax(point);
   }
   const Eigen::Vector3d extent = max - min;
-  double size = wanted_cell_size;
+  // Neither vanishing nor negative, whatever was asked for: the loop below ends and no division is by zero.
+  double size = std::max({wanted_cell_size, least_cell * extent.maxCoeff(), std::numeric_limits<double>::min()});
   const double max_cells = std::max(min_max_cells, max_cells_per_point * static_cast<double>(points.size()));
   while (((extent / size).array().floor() + 1).prod() > max_cells) size *= 1.26;
   cell_size = static_cast<float>(size);
@@ -53,14 +56,15 @@ std::array<int, 3> PointGrid::cell_of(const Eigen::Vector3f& point) const {
   std::array<int, 3> cell;
   for (int axis = 0; axis < 3; ++axis) {
     const float c = (point[axis] - origin[axis]) * inverse_cell_size;
-    cell[axis] = static_cast<int>(std::clamp(c, 0.0f, static_cast<float>(cells[axis] - 1)));  // truncated
+    // Truncated. In this order of arguments NaN, as from infinite coordinates, becomes 0.
+    cell[axis] = static_cast<int>(std::min(std::max(0.0f, c), static_cast<float>(cells[axis] - 1)));
   }
   return cell;
 }
 
 std::int64_t PointGrid::nearest(const Eigen::Vector3f& centre, float radius) const {
   // Most queries end close by: a small sphere first, and what it finds is the nearest of all.
-  for (float reach = std::min(radius, 0.4f * cell_size); reach < radius; reach *= 2.5f) {
+  for (float reach = std::min(radius, 0.4f * cell_size); reach > 0 && reach < radius; reach *= 2.5f) {
     const std::int64_t found = nearest_within(centre, reach);
     if (found >= 0) return found;
   }

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double max_voxels_per_point = 0.6;   // above it the voxels would only repeat the raw sampling
 constexpr int max_steps = 16;                  // dense clouds need 3 to 5, those limited by their spacing up to 12
+constexpr double max_magnitude = 1e150;        // squares of lengths stay within double precision
 constexpr double max_voxels_across = 1 << 18;  // a quarter of what the voxel filter holds: few places ask for more
 
 // Number of occupied voxels, without those of scattered noise, by linear counting (Whang et al. 1990): n = -M ln(share
@@ -37,6 +38,23 @@ double count_voxels(PointView cloud, const Bounds& bounds, double noise_density,
   return std::max(1.0, -static_cast<double>(slots) * std::log(empty / slots));
 }
 
+void require_representable(const Bounds& bounds, std::string_view name) {
+  const double magnitude = std::max(bounds.min.cwiseAbs().maxCoeff(), bounds.max.cwiseAbs().maxCoeff());
+  if (magnitude > max_magnitude) {
+    throw InvalidArgument(
+        fmt::format("{}: a coordinate is {} in magnitude; at most {} is possible, so that squares of "
+                    "distances stay finite",
+                    name, magnitude, max_magnitude));
+  }
+  const double extent = (bounds.max - bounds.min).maxCoeff();
+  if (extent > 0 && extent < 1 / max_magnitude) {
+    throw InvalidArgument(
+        fmt::format("{}: the extent is {}; at least {} is needed, so that squares of distances do "
+                    "not vanish",
+                    name, extent, 1 / max_magnitude));
+  }
+}
+
 }  // namespace
 
 Bounds bounds_of(PointView cloud, std::string_view name) {
@@ -51,6 +69,7 @@ Bounds bounds_of(PointView cloud, std::string_view name) {
     bounds.min = bounds.min.cwiseMin(point);
     bounds.max = bounds.max.cwiseMax(point);
   }
+  require_representable(bounds, name);
   return bounds;
 }
 

@@ -10,6 +10,7 @@
 #include "shell/exit_codes.hpp"
 #include "shell/progress_bar.hpp"
 #include "spatial/point_grid.hpp"
+#include "spatial/unit_of_length.hpp"
 
 namespace igsp::cli {
 namespace {
@@ -21,14 +22,15 @@ constexpr std::size_t kept_points = 20'000'000;
 // Median distance to the nearest other point, over a sample.
 double spacing_of(PointView cloud, const Bounds& bounds, double voxel_size) {
   const Eigen::Vector3d origin = centre_of(bounds);
+  const double unit = unit_of_length(bounds, bounds, voxel_size);
   Points local(cloud.begin(), cloud.end());
-  for (Eigen::Vector3d& point : local) point -= origin;
-  const PointGrid grid(local, voxel_size);
+  for (Eigen::Vector3d& point : local) point = (point - origin) / unit;
+  const PointGrid grid(local, voxel_size / unit);
   std::vector<float> distances;
   const std::size_t stride = std::max<std::size_t>(1, local.size() / 2000);
   for (std::size_t i = 0; i < local.size(); i += stride) {
     float nearest = INFINITY;
-    for (double radius = voxel_size; !std::isfinite(nearest); radius *= 2.0) {
+    for (double radius = voxel_size / unit; !std::isfinite(nearest); radius *= 2.0) {
       grid.visit_sphere(local[i].cast<float>(), static_cast<float>(radius), [&](std::uint32_t j, float squared) {
         if (grid.index[j] != i) nearest = std::min(nearest, squared);
       });
@@ -36,7 +38,7 @@ double spacing_of(PointView cloud, const Bounds& bounds, double voxel_size) {
     distances.push_back(std::sqrt(nearest));
   }
   std::ranges::nth_element(distances, distances.begin() + distances.size() / 2);
-  return distances[distances.size() / 2];
+  return unit * distances[distances.size() / 2];
 }
 
 void print_info(const CloudInput& cloud) {
