@@ -170,8 +170,40 @@ class Align(CommandTest):
         self.assertEqual(report["source"]["points"], len(read_ply(self.source)[0]))
         error = json.loads(self.igsp("evaluate", "--transform", "T.txt", "--truth", self.truth, "--json").stdout)
         self.assertLess(error["e_r_deg"], 0.5)
-        self.refuses("align", self.source, self.target, "--max-points", "20000", "-o", "a.ply", code=2,
-                     saying="-o needs all points in memory")
+
+    def test_a_streamed_cloud_is_written_whole(self):
+        for name in ["a.ply", "a.xyz"]:
+            self.igsp("align", self.source, self.target, "--max-points", "20000", "-o", name, "--transform", "T.txt")
+            printed = self.igsp("info", name).stdout
+            self.assertIn(f"points                {len(read_ply(self.source)[0])}\n", printed)
+        matrix = np.loadtxt(self.folder / "T.txt")
+        expected = read_ply(self.source)[0] @ matrix[:3, :3].T + matrix[:3, 3]
+        np.testing.assert_allclose(read_ply(self.folder / "a.ply")[0], expected, atol=1e-5)
+        np.testing.assert_allclose(np.loadtxt(self.folder / "a.xyz"), expected, atol=1e-5)
+
+    def test_the_output_keeps_what_belongs_to_the_points(self):
+        points = read_ply(self.source)[0]
+        normals = np.tile([0.0, 0.6, 0.8], (len(points), 1))
+        lines = np.c_[points, np.arange(len(points)) % 256, normals]
+        lines = np.round(lines, 6)
+        np.savetxt(self.folder / "s.csv", lines, "%.17g", ",", header="x,y,z,intensity,nx,ny,nz", comments="")
+        run = self.igsp("align", "s.csv", self.target, "-o", "a.csv", "--transform", "T.txt")
+        self.assertEqual(run.stdout.count("a.csv"), 0, "nothing to say")
+        matrix = np.loadtxt(self.folder / "T.txt")
+        moved = np.loadtxt(self.folder / "a.csv", delimiter=",", skiprows=1)
+        self.assertEqual((self.folder / "a.csv").read_text()[:25], "x,y,z,intensity,nx,ny,nz\n")
+        np.testing.assert_allclose(moved[:, :3], lines[:, :3] @ matrix[:3, :3].T + matrix[:3, 3], atol=1e-9)
+        np.testing.assert_array_equal(moved[:, 3], lines[:, 3])
+        np.testing.assert_allclose(moved[:, 4:], normals @ matrix[:3, :3].T, atol=1e-9)
+        run = self.igsp("align", "s.csv", self.target, "-o", "a.ply")
+        self.assertIn("a.ply keeps x, y and z only; -o with .csv keeps intensity, nx, ny, nz as well\n", run.stdout)
+
+    def test_floats_become_doubles_where_they_would_round(self):
+        offset = np.array([500000.0, 5000000.0, 300.0])
+        target = self.cloud("t.ply", read_ply(self.target)[0] + offset, kind="<f8")
+        run = self.igsp("align", self.source, target, "-o", "a.ply")
+        self.assertIn("a.ply holds its coordinates as doubles: floats would be exact to 0.3 only\n", run.stdout)
+        self.assertEqual(read_ply(self.folder / "a.ply")[1], "<f8")
 
     def test_verbose_adds_iterations_and_stages_and_quiet_drops_warnings(self):
         verbose = self.igsp("align", self.source, self.target, "--verbose").stdout

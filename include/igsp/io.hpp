@@ -81,6 +81,10 @@ FileFormat format_of(const std::filesystem::path& path);
 /// float).
 void write_points(const std::filesystem::path& path, PointView points, const WriteOptions& options = {});
 
+/// The same for points that come in chunks, `count` in all, in memory of a chunk (PCD binary_compressed: of the whole).
+void write_points(const std::filesystem::path& path, std::size_t count, const ChunkSource& chunks,
+                  const WriteOptions& options = {});
+
 /// 4x4 row-major text, as in `T.txt`: 16 numbers, or the 12 of its upper three rows, over any lines; # starts a
 /// comment. Throws FileError (also if the matrix is not a rigid motion to 1e-3). The numbers are taken as they are.
 Transformation read_transformation(const std::filesystem::path& path);

@@ -1,13 +1,17 @@
 #include "io/pcd_header.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <string_view>
 
 #include "io/header_lines.hpp"
 #include "io/number_text.hpp"
+#include "io/text_table.hpp"
 
 namespace igsp::io {
 
@@ -136,6 +140,20 @@ void require_version(const InputFile& file, const Entries& entries) {
                                 in_quotes(found->second.values[0])));
 }
 
+void require_coordinates(const InputFile& file, const PcdHeader& header) {
+  for (const Column wanted : {Column::x, Column::y, Column::z}) {
+    const char name = "xyz"[static_cast<std::size_t>(wanted)];
+    const auto is_wanted = [&](const PcdField& field) { return coordinate_named(field.name) == wanted; };
+    const auto found = std::ranges::count_if(header.fields, is_wanted);
+    if (found != 1) {
+      file.fail_at_line(fmt::format("{} fields named '{}' in the header, expected one; it has {}", found, name,
+                                    fmt::join(header.fields | std::views::transform(&PcdField::name), ", ")));
+    }
+    const auto count = std::ranges::find_if(header.fields, is_wanted)->count;
+    if (count != 1) file.fail_at_line(fmt::format("field '{}' has COUNT {}, expected 1", name, count));
+  }
+}
+
 }  // namespace
 
 PcdHeader read_pcd_header(InputFile& file) {
@@ -146,7 +164,14 @@ PcdHeader read_pcd_header(InputFile& file) {
   header.fields = parse_fields(file, entries);
   header.points = parse_points(file, entries);
   for (const PcdField& field : header.fields) scalar_type_of(file, field);
+  require_coordinates(file, header);
   return header;
+}
+
+std::uint64_t PcdHeader::stride() const {
+  std::uint64_t bytes = 0;
+  for (const PcdField& field : fields) bytes += field.size * field.count;
+  return bytes;
 }
 
 ScalarType scalar_type_of(const InputFile& file, const PcdField& field) {

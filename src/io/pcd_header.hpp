@@ -21,9 +21,11 @@ struct PcdHeader {
   FileFormat format = FileFormat::pcd_ascii;
   std::vector<PcdField> fields;
   std::uint64_t points = 0;
+
+  std::uint64_t stride() const;  ///< bytes of a point
 };
 
-/// Consumes everything up to and including the DATA line.
+/// Consumes everything up to and including the DATA line. Fails unless there are x, y and z.
 PcdHeader read_pcd_header(InputFile& file);
 
 /// The scalar type of a field. Fails for a SIZE that its TYPE cannot have.

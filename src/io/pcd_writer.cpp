@@ -1,17 +1,17 @@
 #include <fmt/format.h>
-#include <lzf.h>
 
+#include <array>
 #include <cstdint>
-#include <limits>
+#include <string>
 
-#include "igsp/errors.hpp"
+#include "io/pcd_compressed.hpp"
 #include "io/point_writers.hpp"
 
 namespace igsp::io {
 
 namespace {
 
-std::string header(std::size_t points, bool single_precision, const char* data) {
+std::string header(std::uint64_t points, bool single_precision, const char* data) {
   return fmt::format(
       "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\nSIZE {0} {0} {0}\nTYPE F F F\nCOUNT 1 1 "
       "1\n"
@@ -19,50 +19,32 @@ std::string header(std::size_t points, bool single_precision, const char* data) 
       single_precision ? 4 : 8, points, data);
 }
 
-void append_uint32(std::string& bytes, std::uint32_t value) {
-  for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(value >> shift & 0xFF);
-}
-
-/// All x, then all y, then all z, compressed as one block behind its two sizes.
-void write_compressed(AtomicFile& file, PointView points, bool single_precision) {
-  const std::uint64_t size = std::uint64_t{points.size()} * (single_precision ? 12 : 24);
-  const std::uint64_t room = size + size / 16 + 64;  // LZF grows what it cannot shrink by 1 byte in 32
-  if (room > std::numeric_limits<std::uint32_t>::max()) {
-    throw InvalidArgument(
-        fmt::format("{} points do not fit the 4 GiB of PCD binary_compressed; write PCD binary", points.size()));
-  }
-  std::string columns;
-  columns.reserve(size);
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const Eigen::Vector3d& point : points) {
-      append_binary(columns, point[axis], single_precision, std::endian::little);
+/// All x, then all y, then all z.
+void write_compressed(AtomicFile& file, const ChunkSource& chunks, bool single_precision) {
+  std::array<std::string, 3> columns;
+  for (PointView chunk = chunks(); !chunk.empty(); chunk = chunks()) {
+    for (const Eigen::Vector3d& point : chunk) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        append_binary(columns[axis], point[static_cast<Eigen::Index>(axis)], single_precision, std::endian::little);
+      }
     }
   }
-  std::string compressed(room, '\0');
-  const unsigned compressed_size = size == 0 ? 0
-                                             : lzf_compress(columns.data(), static_cast<unsigned>(size),
-                                                            compressed.data(), static_cast<unsigned>(room));
-  compressed.resize(compressed_size);
-  std::string sizes;
-  append_uint32(sizes, compressed_size);
-  append_uint32(sizes, static_cast<std::uint32_t>(size));
-  file.write(sizes);
-  file.write(compressed);
+  file.write(compressed_pcd(columns[0] + columns[1] + columns[2]));
 }
 
 }  // namespace
 
-void write_pcd(AtomicFile& file, PointView points, const WriteJob& job) {
+void write_pcd(AtomicFile& file, const ChunkSource& chunks, const WriteJob& job) {
   const bool single = job.single_precision;
   if (job.format == FileFormat::pcd_ascii) {
-    file.write(header(points.size(), single, "ascii"));
-    write_lines(file, points, single, ' ');
+    file.write(header(job.count, single, "ascii"));
+    write_lines(file, chunks, single, ' ');
   } else if (job.format == FileFormat::pcd_binary) {
-    file.write(header(points.size(), single, "binary"));
-    write_records(file, points, single, std::endian::little);
+    file.write(header(job.count, single, "binary"));
+    write_records(file, chunks, single, std::endian::little);
   } else {
-    file.write(header(points.size(), single, "binary_compressed"));
-    write_compressed(file, points, single);
+    file.write(header(job.count, single, "binary_compressed"));
+    write_compressed(file, chunks, single);
   }
 }
 

@@ -1,13 +1,17 @@
 #include "io/ply_header.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
+#include <ranges>
 #include <string_view>
 #include <utility>
 
 #include "io/header_lines.hpp"
 #include "io/number_text.hpp"
+#include "io/text_table.hpp"
 
 namespace igsp::io {
 
@@ -84,6 +88,27 @@ PlyHeader read_ply_header(InputFile& file) {
   }
   if (!format_known) file.fail_at_line("the header ends without a 'format' line");
   return header;
+}
+
+std::size_t find_vertex(const InputFile& file, const PlyHeader& header) {
+  const auto is_vertex = [](const PlyElement& element) { return element.name == "vertex"; };
+  const auto vertices = std::ranges::count_if(header.elements, is_vertex);
+  if (vertices == 0) file.fail_at_line("no 'vertex' element in the header: a PLY file without points");
+  if (vertices > 1) {
+    file.fail_at_line(fmt::format(
+        "{} 'vertex' elements in the header, expected one: save every scan in a file of its own", vertices));
+  }
+  const auto vertex = std::ranges::find_if(header.elements, is_vertex);
+  for (const Column wanted : {Column::x, Column::y, Column::z}) {
+    const auto found = std::ranges::count_if(
+        vertex->properties, [&](const PlyProperty& p) { return !p.list_length && coordinate_named(p.name) == wanted; });
+    if (found != 1) {
+      file.fail_at_line(fmt::format("{} vertex properties named '{}' in the header, expected one; it has {}", found,
+                                    "xyz"[static_cast<std::size_t>(wanted)],
+                                    fmt::join(vertex->properties | std::views::transform(&PlyProperty::name), ", ")));
+    }
+  }
+  return static_cast<std::size_t>(vertex - header.elements.begin());
 }
 
 }  // namespace igsp::io

@@ -31,4 +31,7 @@ struct PlyHeader {
 /// Consumes everything up to and including end_header.
 PlyHeader read_ply_header(InputFile& file);
 
+/// Which element holds the points. Fails, naming what there is, unless there is one that has x, y and z.
+std::size_t find_vertex(const InputFile& file, const PlyHeader& header);
+
 }  // namespace igsp::io

@@ -4,7 +4,7 @@
 
 namespace igsp::io {
 
-void write_ply(AtomicFile& file, PointView points, const WriteJob& job) {
+void write_ply(AtomicFile& file, const ChunkSource& chunks, const WriteJob& job) {
   const bool ascii = job.format == FileFormat::ply_ascii;
   const bool big = job.format == FileFormat::ply_binary_big_endian;
   const char* type = job.single_precision ? "float" : "double";
@@ -12,12 +12,12 @@ void write_ply(AtomicFile& file, PointView points, const WriteJob& job) {
                          ascii ? "ascii"
                          : big ? "binary_big_endian"
                                : "binary_little_endian",
-                         points.size()));
+                         job.count));
   file.write(fmt::format("property {0} x\nproperty {0} y\nproperty {0} z\nend_header\n", type));
   if (ascii) {
-    write_lines(file, points, job.single_precision, ' ');
+    write_lines(file, chunks, job.single_precision, ' ');
   } else {
-    write_records(file, points, job.single_precision, big ? std::endian::big : std::endian::little);
+    write_records(file, chunks, job.single_precision, big ? std::endian::big : std::endian::little);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "igsp/io.hpp"
 #include "io/binary_records.hpp"
+#include "io/file_format.hpp"
 #include "io/input_file.hpp"
 #include "io/text_table.hpp"
 
@@ -22,7 +23,11 @@ PointBody open_pcd(InputFile& file);
 /// `columns` as in ReadOptions.
 PointBody open_text(InputFile& file, const std::vector<std::string>& columns);
 
-/// Any of them, by the content or, for text, the extension.
+/// What the file is: by its content or, for text, the extension. To be called before anything is read. Fails for a file
+/// that is not what its extension says.
+FormatFamily find_family(InputFile& file);
+
+/// Any of them.
 PointBody open_body(InputFile& file, const ReadOptions& options);
 
 }  // namespace igsp::io

@@ -27,16 +27,26 @@ FormatFamily family_of_content(InputFile& file) {
 
 }  // namespace
 
-PointBody open_body(InputFile& file, const ReadOptions& options) {
+FormatFamily find_family(InputFile& file) {
   file.detect_encoding();
   const FormatFamily found = family_of_content(file);
-  if (found == FormatFamily::ply) return open_ply(file);
-  if (found == FormatFamily::pcd) return open_pcd(file);
+  if (found != FormatFamily::unknown) return found;
   switch (family_of(format_of(file.path()))) {
     case FormatFamily::ply:
       file.fail_at_offset(0, "not a PLY file: it does not start with a line 'ply'");
     case FormatFamily::pcd:
       file.fail_at_offset(0, "not a PCD file: it starts neither with '# .PCD' nor with VERSION");
+    default:
+      return FormatFamily::text;
+  }
+}
+
+PointBody open_body(InputFile& file, const ReadOptions& options) {
+  switch (find_family(file)) {
+    case FormatFamily::ply:
+      return open_ply(file);
+    case FormatFamily::pcd:
+      return open_pcd(file);
     default:
       return open_text(file, options.columns);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "igsp/errors.hpp"
 #include "igsp/io.hpp"
@@ -20,13 +21,15 @@ namespace {
 constexpr std::size_t flush_size = std::size_t{1} << 16;
 
 template <typename Append>
-void write_each(AtomicFile& file, PointView points, Append append) {
+void write_each(AtomicFile& file, const ChunkSource& chunks, Append append) {
   std::string bytes;
-  for (const Eigen::Vector3d& point : points) {
-    append(bytes, point);
-    if (bytes.size() < flush_size) continue;
-    file.write(bytes);
-    bytes.clear();
+  for (PointView chunk = chunks(); !chunk.empty(); chunk = chunks()) {
+    for (const Eigen::Vector3d& point : chunk) {
+      append(bytes, point);
+      if (bytes.size() < flush_size) continue;
+      file.write(bytes);
+      bytes.clear();
+    }
   }
   file.write(bytes);
 }
@@ -48,8 +51,8 @@ void append_binary(std::string& bytes, double value, bool single_precision, std:
   }
 }
 
-void write_lines(AtomicFile& file, PointView points, bool single_precision, char separator) {
-  write_each(file, points, [&](std::string& text, const Eigen::Vector3d& point) {
+void write_lines(AtomicFile& file, const ChunkSource& chunks, bool single_precision, char separator) {
+  write_each(file, chunks, [&](std::string& text, const Eigen::Vector3d& point) {
     for (int axis = 0; axis < 3; ++axis) {
       // The digits of the rounded value as a double: read back as a double it is then that value in every format.
       append_number(text, single_precision ? static_cast<double>(static_cast<float>(point[axis])) : point[axis]);
@@ -58,8 +61,8 @@ void write_lines(AtomicFile& file, PointView points, bool single_precision, char
   });
 }
 
-void write_records(AtomicFile& file, PointView points, bool single_precision, std::endian byte_order) {
-  write_each(file, points, [&](std::string& bytes, const Eigen::Vector3d& point) {
+void write_records(AtomicFile& file, const ChunkSource& chunks, bool single_precision, std::endian byte_order) {
+  write_each(file, chunks, [&](std::string& bytes, const Eigen::Vector3d& point) {
     for (const double value : point) append_binary(bytes, value, single_precision, byte_order);
   });
 }
@@ -68,11 +71,11 @@ void write_records(AtomicFile& file, PointView points, bool single_precision, st
 
 namespace {
 
-void require_writable(PointView points, bool single_precision) {
+void require_writable(PointView points, std::size_t first, bool single_precision) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (const double value : points[i]) {
       if (std::isfinite(single_precision ? static_cast<float>(value) : value)) continue;
-      throw InvalidArgument(fmt::format("points[{}] has the coordinate {}, which is not finite{}", i, value,
+      throw InvalidArgument(fmt::format("points[{}] has the coordinate {}, which is not finite{}", first + i, value,
                                         single_precision ? " in single precision" : ""));
     }
   }
@@ -81,23 +84,37 @@ void require_writable(PointView points, bool single_precision) {
 }  // namespace
 
 void write_points(const std::filesystem::path& path, PointView points, const WriteOptions& options) {
+  bool given = false;
+  const ChunkSource once = [&] { return std::exchange(given, true) ? PointView() : points; };
+  write_points(path, points.size(), once, options);
+}
+
+void write_points(const std::filesystem::path& path, std::size_t count, const ChunkSource& chunks,
+                  const WriteOptions& options) {
   const FileFormat format = options.format ? *options.format : format_of(path);
-  const io::WriteJob job{format, options.single_precision, io::extension_of(path)};
-  require_writable(points, options.single_precision);
+  const io::WriteJob job{format, count, options.single_precision, io::extension_of(path)};
+  std::size_t written = 0;
+  const ChunkSource checked = [&] {
+    const PointView chunk = chunks();
+    require_writable(chunk, written, options.single_precision);
+    written += chunk.size();
+    return chunk;
+  };
   io::AtomicFile file(path);
   switch (io::family_of(format)) {
     case io::FormatFamily::ply:
-      io::write_ply(file, points, job);
+      io::write_ply(file, checked, job);
       break;
     case io::FormatFamily::pcd:
-      io::write_pcd(file, points, job);
+      io::write_pcd(file, checked, job);
       break;
     case io::FormatFamily::text:
-      io::write_text(file, points, job);
+      io::write_text(file, checked, job);
       break;
     case io::FormatFamily::unknown:
       throw InvalidArgument("options.format is none of the formats");
   }
+  if (written != count) throw InvalidArgument(fmt::format("count = {}, but {} points came", count, written));
   file.commit();
 }
 

@@ -14,4 +14,8 @@ std::size_t size_of(ScalarType type);
 using Decoder = double (*)(const char* bytes);
 Decoder decoder_of(ScalarType type, std::endian byte_order);
 
+/// Writes one number as (unaligned) bytes: rounded to the type, an integer also to its range.
+using Encoder = void (*)(char* bytes, double value);
+Encoder encoder_of(ScalarType type, std::endian byte_order);
+
 }  // namespace igsp::io

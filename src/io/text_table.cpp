@@ -117,7 +117,8 @@ void TextTable::require_records(const InputFile& file) const {
   if (remaining > 0 && (file.remaining() + 1) / bytes < remaining) file.require_records(remaining, bytes, "points");
 }
 
-bool TextTable::next_line(InputFile& file, std::string_view& line) {
+bool TextTable::next_line(InputFile& file, std::string_view& line,
+                          const std::function<void(std::string_view)>& passed) {
   while (remaining > 0 || free_form) {
     if (!file.read_line(line)) {
       if (remaining == until_end || remaining == 0) return false;
@@ -126,7 +127,10 @@ bool TextTable::next_line(InputFile& file, std::string_view& line) {
                       "wrong",
                       remaining));
     }
-    if (is_ignorable(line, free_form)) continue;
+    if (is_ignorable(line, free_form)) {
+      if (passed) passed(line);
+      continue;
+    }
     if (remaining == until_end) return true;
     if (remaining > 0) {
       --remaining;
@@ -139,6 +143,7 @@ bool TextTable::next_line(InputFile& file, std::string_view& line) {
     }
     remaining = *next_block;
     require_records(file);
+    if (passed) passed(line);
   }
   return false;
 }

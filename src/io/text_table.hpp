@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -39,8 +40,9 @@ struct TextTable {
 
   /// A record of n values takes n digits and n separators, the very last one may lack its line end.
   void require_records(const InputFile& file) const;
-  /// The next line that holds a point; false at the end. Takes the counts on the way.
-  bool next_line(InputFile& file, std::string_view& line);
+  /// The next line that holds a point; false at the end. Takes the counts on the way and shows `passed`, if there is
+  /// one, the lines without a point.
+  bool next_line(InputFile& file, std::string_view& line, const std::function<void(std::string_view)>& passed = {});
   void fill(InputFile& file, Chunk& chunk);
 };
 

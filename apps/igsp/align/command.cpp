@@ -9,7 +9,7 @@
 #include "align/answer.hpp"
 #include "files/cloud_input.hpp"
 #include "files/columns_flag.hpp"
-#include "files/foreign_formats.hpp"
+#include "files/moved_output.hpp"
 #include "files/output_file.hpp"
 #include "igsp/align.hpp"
 #include "igsp/errors.hpp"
@@ -49,18 +49,6 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// A survey format is written only from a source of the same format: it keeps what belongs to the points.
-void check_output_format(const AlignSettings& settings) {
-  if (moves_foreign(settings.source, settings.aligned)) return;
-  if (reads_foreign(settings.aligned)) {
-    throw InvalidArgument(fmt::format("-o {}: {} is written only from a SOURCE of the same format, not from {}",
-                                      settings.aligned.string(), settings.aligned.extension().string(),
-                                      settings.source.string()));
-  }
-  check_not_foreign(settings.aligned);
-  format_of(settings.aligned);
-}
-
 // Everything that can be known to fail does so before the long run.
 void check_outputs(const AlignSettings& settings) {
   const std::vector<std::pair<std::string_view, fs::path>> files = {{"SOURCE", settings.source},
@@ -79,7 +67,7 @@ void check_outputs(const AlignSettings& settings) {
     }
     check_writable(path);
   }
-  if (!settings.aligned.empty()) check_output_format(settings);
+  if (!settings.aligned.empty()) check_moved_output(settings.source, settings.aligned);
 }
 
 std::vector<std::string> warnings_about(const CloudInput& source, const CloudInput& target) {
@@ -110,24 +98,8 @@ void stream_large_clouds(CloudInput& source, CloudInput& target, const ScaleOpti
   if (!target.whole()) target.points = read_centroids(target, fine, "filter target", progress);
 }
 
-// Floats are written only where their rounding is far below what the scan resolves.
-bool floats_suffice(PointView points, double voxel_size) {
-  double largest = 0.0;
-  for (const Eigen::Vector3d& point : points) largest = std::max(largest, point.cwiseAbs().maxCoeff());
-  return std::ldexp(largest, -24) <= 1e-4 * voxel_size;
-}
-
-void write_aligned(const AlignSettings& settings, Points points, const Result& result) {
-  if (moves_foreign(settings.source, settings.aligned)) {
-    return write_moved_foreign(settings.source, settings.aligned, result.target_from_source);
-  }
-  for (Eigen::Vector3d& point : points) point = result.target_from_source * point;
-  write_points(settings.aligned, points,
-               {.format = format_of(settings.aligned), .single_precision = floats_suffice(points, result.voxel_size)});
-}
-
 // The reports say what happened in any case; the other files exist only for an answer to rely on, unless forced.
-void write_outputs(const AlignSettings& settings, const Result& result, const Json& report, CloudInput& source,
+void write_outputs(const AlignSettings& settings, const Result& result, const Json& report, const CloudInput& source,
                    const CloudInput& target) {
   if (!settings.report.empty()) write_text(settings.report, report_text(report));
   if (!settings.html.empty()) write_text(settings.html, report_page(report, source.points, target.points));
@@ -144,7 +116,12 @@ void write_outputs(const AlignSettings& settings, const Result& result, const Js
   stop_if_interrupted();
   if (!settings.transformation.empty()) write_transformation(settings.transformation, result.target_from_source);
   stop_if_interrupted();
-  if (!settings.aligned.empty()) write_aligned(settings, std::move(source.points), result);
+  if (settings.aligned.empty()) return;
+  // Floats are written only where their rounding is far below what the scan resolves.
+  const double tolerance = 1e-4 * result.voxel_size;
+  for (const std::string& line : write_moved_output(source, settings.aligned, result.target_from_source, tolerance)) {
+    std::cout << line << "\n";
+  }
 }
 
 int run_align(const AlignSettings& settings) {
@@ -161,10 +138,6 @@ int run_align(const AlignSettings& settings) {
   const auto max_points = static_cast<std::size_t>(settings.max_points);
   CloudInput source = read_cloud(settings.source, max_points, "read source", progress, settings.read);
   CloudInput target = read_cloud(settings.target, max_points, "read target", progress, settings.read);
-  if (!source.whole() && !settings.aligned.empty() && !moves_foreign(settings.source, settings.aligned)) {
-    throw InvalidArgument(fmt::format("-o needs all points in memory: {} has {}, --max-points is {}",
-                                      source.path.string(), source.total, settings.max_points));
-  }
   const std::vector<std::string> warnings = warnings_about(source, target);
   stream_large_clouds(source, target, options.scale, progress);
   const double read = now_s(), cpu_before = cpu_now_s();
@@ -202,7 +175,9 @@ void add_align_command(CLI::App& app, Command& command) {
   const auto settings = std::make_shared<AlignSettings>();
   align->add_option("SOURCE", settings->source, "cloud that moves")->required()->type_name("");
   align->add_option("TARGET", settings->target, "cloud that stays")->required()->type_name("");
-  align->add_option("-o,--output", settings->aligned, "write all points of SOURCE, moved into TARGET's frame")
+  align
+      ->add_option("-o,--output", settings->aligned,
+                   "write SOURCE moved into TARGET's frame, with all its properties if FILE has SOURCE's format")
       ->type_name("FILE");
   align->add_option("--transform", settings->transformation, "write target_from_source, 4x4 text")->type_name("FILE");
   align->add_option("--report", settings->report, "write the whole answer as JSON, whatever the verdict")

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "igsp/point_cloud.hpp"
+#include "igsp/progress.hpp"
+#include "io/atomic_file.hpp"
+#include "io/input_file.hpp"
+
+namespace igsp::io {
+
+/// A moved copy in the making: what is read, what moves it, and what is written, through one buffer.
+class MoveJob {
+ public:
+  MoveJob(InputFile& source, AtomicFile& destination, const Transformation& destination_from_source,
+          const ProgressCallback& progress)
+      : file(source), transformation(destination_from_source), destination_(destination), progress_(progress) {}
+
+  InputFile& file;
+  const Transformation& transformation;
+  std::string bytes;  ///< to be written; append here, then call flush_if_full or flush
+
+  void flush_if_full();
+  /// Writes the buffer and tells the progress. Throws Cancelled.
+  void flush();
+
+  /// The lines that `file` has consumed so far, each as `edited` returns it.
+  void copy_lines_read(const std::function<std::string(std::string_view line)>& edited);
+  /// The next `count` bytes of the file as they are.
+  void copy(std::uint64_t count);
+  /// All that is left of the file as it is.
+  void copy_rest();
+
+ private:
+  AtomicFile& destination_;
+  const ProgressCallback& progress_;
+};
+
+/// One for each family of formats; all that the file holds is read through and written. They return whether coordinates
+/// are of another type than in the file.
+bool move_ply(MoveJob& job, bool doubles);
+bool move_pcd(MoveJob& job, bool doubles);
+void move_text(MoveJob& job, const std::vector<std::string>& columns);
+
+}  // namespace igsp::io

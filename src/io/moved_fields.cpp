@@ -1,0 +1,52 @@
+#include "io/moved_fields.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "io/column_names.hpp"
+
+namespace igsp::io {
+
+namespace {
+
+struct Triple {
+  std::array<std::string_view, 3> names;
+  bool direction;
+};
+
+constexpr Triple triples[] = {{{"x", "y", "z"}, false},
+                              {{"vp_x", "vp_y", "vp_z"}, false},           // where a point was seen from
+                              {{"view_px", "view_py", "view_pz"}, false},  // of a camera
+                              {{"nx", "ny", "nz"}, true},
+                              {{"normal_x", "normal_y", "normal_z"}, true},
+                              {{"normalx", "normaly", "normalz"}, true},
+                              {{"principal_curvature_x", "principal_curvature_y", "principal_curvature_z"}, true},
+                              {{"x_axisx", "x_axisy", "x_axisz"}, true},
+                              {{"y_axisx", "y_axisy", "y_axisz"}, true},
+                              {{"z_axisx", "z_axisy", "z_axisz"}, true}};
+
+}  // namespace
+
+std::vector<MovedFields> find_moved_fields(const std::vector<std::string>& names) {
+  std::vector<std::string> plain;
+  for (const std::string& name : names) plain.push_back(plain_name(name));
+  std::vector<MovedFields> found;
+  for (const Triple& triple : triples) {
+    MovedFields moved{{}, triple.direction};
+    std::size_t axes = 0;
+    for (; axes < 3; ++axes) {
+      const auto name = std::ranges::find(plain, triple.names[axes]);
+      if (name == plain.end()) break;
+      moved.fields[axes] = static_cast<std::size_t>(name - plain.begin());
+    }
+    if (axes == 3) found.push_back(moved);
+  }
+  return found;
+}
+
+Eigen::Vector3d moved(const Eigen::Vector3d& values, bool direction, const Transformation& transformation) {
+  if (!values.allFinite()) return values;
+  return direction ? Eigen::Vector3d(transformation.linear() * values) : Eigen::Vector3d(transformation * values);
+}
+
+}  // namespace igsp::io

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "igsp/point_cloud.hpp"
+
+namespace igsp::io {
+
+/// Three values of a record that a motion changes together.
+struct MovedFields {
+  std::array<std::size_t, 3> fields{};  ///< their indices in the record
+  bool direction = false;               ///< turned only, as a normal
+};
+
+/// Those of a record with these field names, in any letter case: x y z, positions of cameras (vp_x, view_px), normals
+/// (nx, normal_x, Normal X), axes of cameras and directions of curvature.
+std::vector<MovedFields> find_moved_fields(const std::vector<std::string>& names);
+
+/// Where the motion puts them; unchanged where one is not finite.
+Eigen::Vector3d moved(const Eigen::Vector3d& values, bool direction, const Transformation& transformation);
+
+}  // namespace igsp::io
