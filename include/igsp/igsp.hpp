@@ -1,6 +1,7 @@
 #pragma once
 
 #include "igsp/align.hpp"
+#include "igsp/archive.hpp"
 #include "igsp/errors.hpp"
 #include "igsp/evaluation.hpp"
 #include "igsp/io.hpp"

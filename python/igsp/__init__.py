@@ -23,7 +23,16 @@ from igsp._core import (
 from igsp._core import version as __version__
 from igsp.errors import Cancelled, NotRegistered
 from igsp.evaluation import match_quality, pose_error, transform_points
-from igsp.files import read_points, read_transformation, write_points, write_transformation
+from igsp.files import (
+    read_features,
+    read_points,
+    read_result,
+    read_transformation,
+    write_features,
+    write_points,
+    write_result,
+    write_transformation,
+)
 from igsp.registration import align, extract_features, options
 
 __all__ = [
@@ -46,10 +55,14 @@ __all__ = [
     "match_quality",
     "options",
     "pose_error",
+    "read_features",
     "read_points",
+    "read_result",
     "read_transformation",
     "simulate",
     "transform_points",
+    "write_features",
     "write_points",
+    "write_result",
     "write_transformation",
 ]

@@ -15,3 +15,6 @@ class NotRegistered(RuntimeError):
     def __init__(self, result: Result) -> None:
         super().__init__(result.reason)
         self.result = result
+
+    def __reduce__(self) -> tuple[type[NotRegistered], tuple[Result]]:
+        return type(self), (self.result,)  # so that it passes from one process to another

@@ -8,6 +8,7 @@ import warnings
 import numpy.typing as npt
 
 from igsp import _core
+from igsp._core import Features, Result
 from igsp.arrays import Matrix, Points, matrix_array, points_array
 
 Path = str | os.PathLike[str]
@@ -51,3 +52,29 @@ def read_transformation(path: Path) -> Matrix:
 def write_transformation(path: Path, transformation: npt.ArrayLike) -> None:
     """Writes a (4, 4) transformation as text that reads back as the same numbers."""
     _core.write_transformation(os.fspath(path), matrix_array(transformation, "transformation"))
+
+
+def write_features(path: Path, features: Features) -> None:
+    """Writes features to meet other clouds later, in another process or on another machine; whole or not at all.
+
+    `read_features` gives back the same bits. So does a pickle, whose bytes are the same.
+    """
+    _core.write_features(os.fspath(path), features)
+
+
+def read_features(path: Path) -> Features:
+    """What `write_features` wrote.
+
+    OSError says what is wrong with a file that was cut or changed, or that a version of igsp with other fields wrote.
+    """
+    return _core.read_features(os.fspath(path))
+
+
+def write_result(path: Path, result: Result) -> None:
+    """Writes a result, whole or not at all, for `read_result`."""
+    _core.write_result(os.fspath(path), result)
+
+
+def read_result(path: Path) -> Result:
+    """What `write_result` wrote, bit for bit. OSError as for `read_features`."""
+    return _core.read_result(os.fspath(path))

@@ -14,6 +14,7 @@ void bind_features(nb::module_& module);
 void bind_align(nb::module_& module);
 void bind_evaluation(nb::module_& module);
 void bind_files(nb::module_& module);
+void bind_archive(nb::module_& module);
 void bind_simulation(nb::module_& module);
 void bind_command_line(nb::module_& module);
 

@@ -4,11 +4,12 @@
 #include <nanobind/stl/string.h>
 
 #include "arrays.hpp"
+#include "portable.hpp"
 
 namespace igsp::python {
 
 void bind_evaluation(nb::module_& module) {
-  nb::class_<PoseError>(module, "PoseError", "Error of a transformation against the true one (Eq. 12-13).")
+  portable_class<PoseError>(module, "PoseError", "Error of a transformation against the true one (Eq. 12-13).")
       .def_ro("rotation_rad", &PoseError::rotation_rad, "e_r [rad], in [0, pi].")
       .def_ro("translation", &PoseError::translation, "e_t [units of the cloud]; depends on the origin.")
       .def_ro("centroid_displacement", &PoseError::centroid_displacement,
@@ -17,7 +18,7 @@ void bind_evaluation(nb::module_& module) {
         return fmt::format("<PoseError: rotation {:.3g} rad, translation {:.3g}, centroid {:.3g}>", error.rotation_rad,
                            error.translation, error.centroid_displacement);
       });
-  nb::class_<MatchQuality>(module, "MatchQuality", "Correspondences against ground truth (Eq. 14).")
+  portable_class<MatchQuality>(module, "MatchQuality", "Correspondences against ground truth (Eq. 14).")
       .def_ro("correct", &MatchQuality::correct, "Those closer than the radius at the true transformation.")
       .def_ro("matched", &MatchQuality::matched, "All correspondences.")
       .def_ro("possible", &MatchQuality::possible,

@@ -7,6 +7,7 @@
 
 #include "arrays.hpp"
 #include "options.hpp"
+#include "portable.hpp"
 #include "progress.hpp"
 
 namespace igsp::python {
@@ -27,9 +28,9 @@ Features extract(const PointsIn& cloud, const Keywords& keywords, nb::handle pro
 }  // namespace
 
 void bind_features(nb::module_& module) {
-  nb::class_<Features>(module, "Features",
-                       "What the method knows of one cloud. Coordinates are relative to `origin` (world = local + "
-                       "origin). N voxels, K keypoints. Its arrays are read-only.")
+  portable_class<Features>(module, "Features",
+                           "What the method knows of one cloud. Coordinates are relative to `origin` (world = local + "
+                           "origin). N voxels, K keypoints. Its arrays are read-only.")
       .def_prop_ro("origin", &view<&Features::origin>, "(3,) float64.")
       .def_ro("voxel_size", &Features::voxel_size, "[units of the cloud].")
       .def_prop_ro("points", &view<&Features::points>, "(N, 3) float64: voxel centroids, local.")

@@ -12,6 +12,7 @@ NB_MODULE(_core, module) {
   bind_align(module);
   bind_evaluation(module);
   bind_files(module);
+  bind_archive(module);
   bind_simulation(module);
   bind_command_line(module);
 }

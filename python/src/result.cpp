@@ -9,6 +9,7 @@
 
 #include "arrays.hpp"
 #include "options.hpp"
+#include "portable.hpp"
 
 namespace igsp::python {
 namespace {
@@ -42,7 +43,7 @@ auto matrix(const Class& self) {
 
 void bind_iteration(nb::module_& module) {
   using Record = IterationRecord;
-  nb::class_<Record>(module, "IterationRecord", "One pass of the loop (the paper's Algorithm 1).")
+  portable_class<Record>(module, "IterationRecord", "One pass of the loop (the paper's Algorithm 1).")
       .def_ro("k", &Record::k, "Number of the pass, from 0.")
       .def_ro("w_fd", &Record::w_fd, "Weight of the feature distance (Eq. 7).")
       .def_ro("w_ed", &Record::w_ed, "Weight of the Euclidean distance.")
@@ -65,11 +66,11 @@ void bind_iteration(nb::module_& module) {
 }
 
 void bind_evidence(nb::module_& module) {
-  nb::class_<CloudSummary>(module, "CloudSummary", "How much of a cloud went into the method.")
+  portable_class<CloudSummary>(module, "CloudSummary", "How much of a cloud went into the method.")
       .def_ro("points", &CloudSummary::points, "Points as given.")
       .def_ro("voxels", &CloudSummary::voxels, "Points after the voxel filter.")
       .def_ro("keypoints", &CloudSummary::keypoints, "Keypoints among them.");
-  nb::class_<Evidence>(module, "Evidence", "What the verdict is made of: two independent questions to the clouds.")
+  portable_class<Evidence>(module, "Evidence", "What the verdict is made of: two independent questions to the clouds.")
       .def_ro("mutual_matches", &Evidence::mutual_matches,
               "Mutual nearest neighbours among the descriptors in a common frame ...")
       .def_ro("agreeing_matches", &Evidence::agreeing_matches, "... and those of them within 2.5 voxels.")
@@ -77,7 +78,7 @@ void bind_evidence(nb::module_& module) {
               "Of the places where the surfaces meet, the share where they touch, (0, 1).")
       .def_ro("quality", &Evidence::quality, "Both shares in one number, for the log odds.")
       .def_ro("rival_odds", &Evidence::rival_odds, "Odds of the other poses that were looked into, against this one.");
-  nb::class_<RunnerUp>(module, "RunnerUp", "The best other pose that was looked into.")
+  portable_class<RunnerUp>(module, "RunnerUp", "The best other pose that was looked into.")
       .def_prop_ro("target_from_source", &matrix<RunnerUp, &RunnerUp::target_from_source>, nb::rv_policy::automatic,
                    "(4, 4) float64.")
       .def_ro("share", &RunnerUp::share,
@@ -85,13 +86,13 @@ void bind_evidence(nb::module_& module) {
 }
 
 void bind_precision(nb::module_& module) {
-  nb::class_<FreeDirection>(module, "FreeDirection",
-                            "A rigid motion of the source that hardly changes how it lies on the target.")
+  portable_class<FreeDirection>(module, "FreeDirection",
+                                "A rigid motion of the source that hardly changes how it lies on the target.")
       .def_prop_ro("motion", &view_of_member<FreeDirection, &FreeDirection::motion>,
                    "(6,) float64: rotation and translation about Precision.centre, target frame, unit length with "
                    "rotations scaled by the size of the scene.")
       .def_ro("description", &FreeDirection::description, "Such as \"translation along (1.00, 0.00, 0.00)\".");
-  nb::class_<Precision>(
+  portable_class<Precision>(
       module, "Precision",
       "How well the surfaces fix the transformation. Order: rotation about x, y, z [rad], translation along x, y, z\n"
       "[units of the cloud]; small motions are applied on the left, in the target's frame, about `centre`.")
@@ -110,8 +111,8 @@ void bind_result(nb::module_& module) {
   bind_iteration(module);
   bind_evidence(module);
   bind_precision(module);
-  nb::class_<Result>(module, "Result",
-                     "What `align` answers. Not being able to register is an answer, never an exception.")
+  portable_class<Result>(module, "Result",
+                         "What `align` answers. Not being able to register is an answer, never an exception.")
       .def_ro("registered", &Result::registered, "The verdict.")
       .def_ro("confidence", &Result::confidence, "That target_from_source is right, [0, 1].")
       .def_ro("reason", &Result::reason, "One sentence with the evidence for the verdict.")

@@ -6,6 +6,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "arrays.hpp"
+#include "portable.hpp"
 
 namespace igsp::python {
 namespace {
@@ -20,7 +21,8 @@ another scene; the same arguments give the same scans. Raises ValueError.)";
 }  // namespace
 
 void bind_simulation(nb::module_& module) {
-  nb::class_<SimulatedScan>(module, "SimulatedScan", "One scan in the scanner's own frame, its origin is the sensor.")
+  portable_class<SimulatedScan>(module, "SimulatedScan",
+                                "One scan in the scanner's own frame, its origin is the sensor.")
       .def_prop_ro(
           "points", [](SimulatedScan& scan) { return view(scan.points); }, "(N, 3) float64 [m].")
       .def_prop_ro(

@@ -1,0 +1,66 @@
+#include "archive/consistency.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "archive/bytes.hpp"
+
+namespace igsp::archive {
+namespace {
+
+constexpr double max_voxels_from_centre = 1 << 20;  // as the voxel filter has it
+constexpr double max_unit = 1.001;                  // an entry of a unit vector that was rounded
+
+void require(bool holds, std::string_view what) {
+  if (!holds) throw Fault(fmt::format("it contradicts itself: {}", what));
+}
+
+template <typename Values, typename Others>
+void require_one_each(const Values& values, std::string_view name, const Others& others, std::string_view owner) {
+  require(values.size() == others.size(), fmt::format("{} {} for {} {}", values.size(), name, others.size(), owner));
+}
+
+template <typename Matrices>
+void require_entries_up_to(double limit, const Matrices& matrices, std::string_view name) {
+  // Written so that NaN does not pass.
+  const bool all = std::ranges::all_of(matrices, [&](const auto& m) { return (m.array().abs() <= limit).all(); });
+  require(all, fmt::format("an entry of {} is not finite or beyond {}", name, limit));
+}
+
+void require_indices_below(std::size_t size, const std::vector<KeypointMatch>& matches, auto side) {
+  const bool all = std::ranges::all_of(matches, [&](const KeypointMatch& match) { return match.*side < size; });
+  require(all, "a correspondence of a keypoint that is not there");
+}
+
+}  // namespace
+
+void require_consistent(const Features& features) {
+  require(std::isfinite(features.voxel_size) && features.voxel_size >= 0, "voxel_size is negative or not finite");
+  require(features.origin.allFinite(), "origin is not finite");
+  require(!features.viewpoint || features.viewpoint->allFinite(), "viewpoint is not finite");
+  require_one_each(features.curvature, "curvatures", features.points, "points");
+  require_one_each(features.normals, "normals", features.points, "points");
+  require_one_each(features.frames, "frames", features.keypoints, "keypoints");
+  require_one_each(features.descriptors, "descriptors", features.keypoints, "keypoints");
+  const bool indices =
+      std::ranges::all_of(features.keypoints, [&](std::uint32_t i) { return i < features.points.size(); });
+  require(indices, "a keypoint is none of its points");
+  require_entries_up_to(max_voxels_from_centre * features.voxel_size, features.points, "points");
+  require_entries_up_to(max_voxels_from_centre * features.voxel_size, features.fine_points, "fine_points");
+  require_entries_up_to(max_unit, features.normals, "normals");
+  require_entries_up_to(max_unit, features.frames, "frames");
+  require(std::ranges::all_of(features.curvature, [](float value) { return std::isfinite(value); }),
+          "a curvature is not finite");
+}
+
+void require_consistent(const Result& result) {
+  for (const IterationRecord& record : result.iterations) {
+    require_indices_below(result.source_keypoints.size(), record.correspondences, &KeypointMatch::source);
+    require_indices_below(result.target_keypoints.size(), record.correspondences, &KeypointMatch::target);
+  }
+}
+
+}  // namespace igsp::archive

@@ -1,0 +1,237 @@
+#pragma once
+
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+
+#include "config/field_count.hpp"
+#include "igsp/evaluation.hpp"
+#include "igsp/features.hpp"
+#include "igsp/result.hpp"
+#include "igsp/simulation.hpp"
+
+/// The one list of what is written of every struct: a new field is one line here, and without it nothing compiles.
+namespace igsp::archive {
+
+template <typename Class, typename Member>
+struct Field {
+  std::string_view name;
+  Member Class::*member;
+};
+
+template <typename Class>
+struct Layout {};
+
+template <>
+struct Layout<Features> {
+  static constexpr std::string_view name = "Features";
+  static constexpr std::tuple fields = {
+      Field{"origin", &Features::origin},
+      Field{"viewpoint", &Features::viewpoint},
+      Field{"voxel_size", &Features::voxel_size},
+      Field{"points", &Features::points},
+      Field{"curvature", &Features::curvature},
+      Field{"normals", &Features::normals},
+      Field{"fine_points", &Features::fine_points},
+      Field{"keypoints", &Features::keypoints},
+      Field{"frames", &Features::frames},
+      Field{"descriptors", &Features::descriptors},
+      Field{"cloud_points", &Features::cloud_points},
+      Field{"timings_s", &Features::timings_s},
+  };
+};
+
+template <>
+struct Layout<KeypointMatch> {
+  static constexpr std::string_view name = "KeypointMatch";
+  static constexpr std::tuple fields = {
+      Field{"source", &KeypointMatch::source},
+      Field{"target", &KeypointMatch::target},
+  };
+};
+
+template <>
+struct Layout<IterationRecord> {
+  static constexpr std::string_view name = "IterationRecord";
+  static constexpr std::tuple fields = {
+      Field{"k", &IterationRecord::k},
+      Field{"w_fd", &IterationRecord::w_fd},
+      Field{"w_ed", &IterationRecord::w_ed},
+      Field{"t_cd", &IterationRecord::t_cd},
+      Field{"candidate_edges", &IterationRecord::candidate_edges},
+      Field{"matches", &IterationRecord::matches},
+      Field{"energy", &IterationRecord::energy},
+      Field{"rotation_step_rad", &IterationRecord::rotation_step_rad},
+      Field{"translation_step", &IterationRecord::translation_step},
+      Field{"seconds", &IterationRecord::seconds},
+      Field{"target_from_source", &IterationRecord::target_from_source},
+      Field{"correspondences", &IterationRecord::correspondences},
+  };
+};
+
+template <>
+struct Layout<CloudSummary> {
+  static constexpr std::string_view name = "CloudSummary";
+  static constexpr std::tuple fields = {
+      Field{"points", &CloudSummary::points},
+      Field{"voxels", &CloudSummary::voxels},
+      Field{"keypoints", &CloudSummary::keypoints},
+      Field{"viewpoint", &CloudSummary::viewpoint},
+  };
+};
+
+template <>
+struct Layout<FreeDirection> {
+  static constexpr std::string_view name = "FreeDirection";
+  static constexpr std::tuple fields = {
+      Field{"motion", &FreeDirection::motion},
+      Field{"description", &FreeDirection::description},
+  };
+};
+
+template <>
+struct Layout<Precision> {
+  static constexpr std::string_view name = "Precision";
+  static constexpr std::tuple fields = {
+      Field{"inlier_rmse", &Precision::inlier_rmse},         Field{"centre", &Precision::centre},
+      Field{"information", &Precision::information},         Field{"covariance", &Precision::covariance},
+      Field{"free_directions", &Precision::free_directions},
+  };
+};
+
+template <>
+struct Layout<FreeSpaceViolation> {
+  static constexpr std::string_view name = "FreeSpaceViolation";
+  static constexpr std::tuple fields = {
+      Field{"in_view", &FreeSpaceViolation::in_view},
+      Field{"contradicting", &FreeSpaceViolation::contradicting},
+  };
+};
+
+template <>
+struct Layout<FreeSpace> {
+  static constexpr std::string_view name = "FreeSpace";
+  static constexpr std::tuple fields = {
+      Field{"source", &FreeSpace::source},
+      Field{"target", &FreeSpace::target},
+  };
+};
+
+template <>
+struct Layout<Evidence> {
+  static constexpr std::string_view name = "Evidence";
+  static constexpr std::tuple fields = {
+      Field{"mutual_matches", &Evidence::mutual_matches}, Field{"agreeing_matches", &Evidence::agreeing_matches},
+      Field{"contact_share", &Evidence::contact_share},   Field{"quality", &Evidence::quality},
+      Field{"rival_odds", &Evidence::rival_odds},         Field{"free_space", &Evidence::free_space},
+  };
+};
+
+template <>
+struct Layout<RunnerUp> {
+  static constexpr std::string_view name = "RunnerUp";
+  static constexpr std::tuple fields = {
+      Field{"target_from_source", &RunnerUp::target_from_source},
+      Field{"share", &RunnerUp::share},
+  };
+};
+
+template <>
+struct Layout<Result> {
+  static constexpr std::string_view name = "Result";
+  static constexpr std::tuple fields = {
+      Field{"registered", &Result::registered},
+      Field{"confidence", &Result::confidence},
+      Field{"reason", &Result::reason},
+      Field{"termination", &Result::termination},
+      Field{"target_from_source", &Result::target_from_source},
+      Field{"has_estimate", &Result::has_estimate},
+      Field{"overlap_source", &Result::overlap_source},
+      Field{"overlap_target", &Result::overlap_target},
+      Field{"evidence", &Result::evidence},
+      Field{"runner_up", &Result::runner_up},
+      Field{"precision", &Result::precision},
+      Field{"rmse", &Result::rmse},
+      Field{"voxel_size", &Result::voxel_size},
+      Field{"source", &Result::source},
+      Field{"target", &Result::target},
+      Field{"source_keypoints", &Result::source_keypoints},
+      Field{"target_keypoints", &Result::target_keypoints},
+      Field{"iterations", &Result::iterations},
+      Field{"timings_s", &Result::timings_s},
+      Field{"options", &Result::options},
+  };
+};
+
+template <>
+struct Layout<PoseError> {
+  static constexpr std::string_view name = "PoseError";
+  static constexpr std::tuple fields = {
+      Field{"rotation_rad", &PoseError::rotation_rad},
+      Field{"translation", &PoseError::translation},
+      Field{"centroid_displacement", &PoseError::centroid_displacement},
+  };
+};
+
+template <>
+struct Layout<MatchQuality> {
+  static constexpr std::string_view name = "MatchQuality";
+  static constexpr std::tuple fields = {
+      Field{"correct", &MatchQuality::correct},
+      Field{"matched", &MatchQuality::matched},
+      Field{"possible", &MatchQuality::possible},
+  };
+};
+
+template <>
+struct Layout<SimulatedScan> {
+  static constexpr std::string_view name = "SimulatedScan";
+  static constexpr std::tuple fields = {
+      Field{"points", &SimulatedScan::points},
+      Field{"world_from_scanner", &SimulatedScan::world_from_scanner},
+      Field{"viewpoint", &SimulatedScan::viewpoint},
+  };
+};
+
+using AllStructs =
+    std::tuple<Features, KeypointMatch, IterationRecord, CloudSummary, FreeDirection, Precision, FreeSpaceViolation,
+               FreeSpace, Evidence, RunnerUp, Result, PoseError, MatchQuality, SimulatedScan>;
+
+template <typename T>
+concept HasLayout = requires {
+  Layout<T>::fields;
+};
+
+template <typename A, typename B>
+constexpr bool same_member(A a, B b) {
+  if constexpr (std::is_same_v<A, B>) {
+    return a == b;
+  } else {
+    return false;
+  }
+}
+
+/// How many fields of the list are the same as `field`.
+template <typename Class, typename Member>
+constexpr int times_listed(const Field<Class, Member>& field) {
+  return std::apply(
+      [&](const auto&... fields) { return (0 + ... + (same_member(fields.member, field.member) ? 1 : 0)); },
+      Layout<Class>::fields);
+}
+
+template <typename Class>
+constexpr bool lists_each_field_once() {
+  constexpr auto& fields = Layout<Class>::fields;
+  const bool distinct = std::apply([](const auto&... each) { return (... && (times_listed(each) == 1)); }, fields);
+  return distinct && std::tuple_size_v<std::remove_cvref_t<decltype(fields)>> == field_count<Class>();
+}
+
+template <typename... Classes>
+constexpr bool list_each_field_once(std::type_identity<std::tuple<Classes...>>) {
+  static_assert((... && lists_each_field_once<Classes>()),
+                "a struct has a field that is missing in its Layout above, or listed twice");
+  return true;
+}
+static_assert(list_each_field_once(std::type_identity<AllStructs>()));
+
+}  // namespace igsp::archive
