@@ -4,7 +4,7 @@
 
 #include <iostream>
 
-#include "benchmark/csv.hpp"
+#include "files/csv.hpp"
 #include "benchmark/pair.hpp"
 #include "files/output_file.hpp"
 #include "igsp/errors.hpp"
