@@ -120,7 +120,7 @@ class NetworkCommand(unittest.TestCase):
         self.refuses("nothing", "-o", "survey", code=3, saying="a folder without any point cloud")
         (self.folder / "v.csv").write_text("scan,x,y,z\nother,0,0,0\n")
         self.refuses(*self.scans, "-o", "survey", "--viewpoints", "v.csv", code=3,
-                     saying='v.csv:2: column 1 (scan): "other" is none of the scans given')
+                     saying='v.csv: line 2, column 1 (scan): "other" is none of the scans given')
         (self.folder / "v.csv").write_text("scan,x,y\nother,0,0\n")
         self.refuses(*self.scans, "-o", "survey", "--viewpoints", "v.csv", code=3, saying="has no column z")
         self.refuses(*self.scans, "-o", "survey", "--min-unconfirmed-confidence", "2", code=2,

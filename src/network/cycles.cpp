@@ -33,8 +33,8 @@ std::vector<CycleSupport> cycle_support(const LinkGraph& graph) {
           CycleSupport& entry = found[loop[i].link];
           ++(closes ? entry.triangles : entry.open);
           if (closes) {
-            entry.support += std::min(graph.links[loop[(i + 1) % 3].link].weight,
-                                      graph.links[loop[(i + 2) % 3].link].weight);
+            entry.support +=
+                std::min(graph.links[loop[(i + 1) % 3].link].weight, graph.links[loop[(i + 2) % 3].link].weight);
           }
         }
       }

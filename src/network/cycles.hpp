@@ -8,9 +8,9 @@ namespace igsp {
 
 /// What loops of three links say of a link.
 struct CycleSupport {
-  std::size_t triangles = 0;   ///< those that close
-  std::size_t open = 0;        ///< those that do not: one of their three links is wrong
-  double support = 0;          ///< of those that close, the sum of the weaker other link's weight
+  std::size_t triangles = 0;  ///< those that close
+  std::size_t open = 0;       ///< those that do not: one of their three links is wrong
+  double support = 0;         ///< of those that close, the sum of the weaker other link's weight
 };
 
 /// One entry per link.

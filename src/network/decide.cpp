@@ -31,8 +31,7 @@ double displacement(const NetworkLink& link, const Network& network, const ScanS
   const Transformation difference = network.scans[link.target].world_from_scan.inverse() *
                                     network.scans[link.source].world_from_scan * link.target_from_source.inverse();
   const Vector6 step = step_about(link.target_from_source * shape.centre, difference);
-  return std::sqrt(step.tail<3>().squaredNorm() +
-                   2.0 / 3.0 * step.head<3>().squaredNorm() * shape.size * shape.size);
+  return std::sqrt(step.tail<3>().squaredNorm() + 2.0 / 3.0 * step.head<3>().squaredNorm() * shape.size * shape.size);
 }
 
 // The frame of its first scan is a component's world, and the covariance that of a motion in the world.

@@ -24,7 +24,8 @@ constexpr double least_weight = 0.1, greatest_weight = 5;  // log odds
 
 Matrix6 floor_of(double sigma, double size) {
   Vector6 squares;
-  squares << Eigen::Vector3d::Constant(size > 0 ? sigma * sigma / (size * size) : 1), Eigen::Vector3d::Constant(sigma * sigma);
+  squares << Eigen::Vector3d::Constant(size > 0 ? sigma * sigma / (size * size) : 1),
+      Eigen::Vector3d::Constant(sigma * sigma);
   return squares.asDiagonal();
 }
 

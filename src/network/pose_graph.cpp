@@ -53,8 +53,7 @@ class Balance {
   }
 
   BalancedPoses run() {
-    const std::size_t longest =
-        loop_length_.empty() ? 0 : *std::max_element(loop_length_.begin(), loop_length_.end());
+    const std::size_t longest = loop_length_.empty() ? 0 : *std::max_element(loop_length_.begin(), loop_length_.end());
     double leniency = std::max<double>(1.0, static_cast<double>(longest));
     for (;; leniency = std::max(1.0, leniency / 2)) {
       settle(leniency);
@@ -79,8 +78,7 @@ class Balance {
         const std::size_t next = is_target ? link.source : link.target;
         if (tree_[next] != no_unknown) continue;
         tree_[next] = anchor;
-        poses_[next] =
-            poses_[here] * (is_target ? link.target_from_source : link.target_from_source.inverse());
+        poses_[next] = poses_[here] * (is_target ? link.target_from_source : link.target_from_source.inverse());
         reached.push_back(next);
       }
     }
@@ -119,8 +117,8 @@ class Balance {
       const Eigen::Matrix3d turned = left_jacobian_inverse(residual.head<3>());
       const std::size_t scans[2] = {link.source, link.target};
       Matrix6 jacobians[2];
-      jacobians[0] = transport(poses_[link.target].inverse() * poses_[link.source], graph_.centres[link.source],
-                               moved_centre);
+      jacobians[0] =
+          transport(poses_[link.target].inverse() * poses_[link.source], graph_.centres[link.source], moved_centre);
       jacobians[1] = -transport(Transformation::Identity(), graph_.centres[link.target], moved_centre);
       for (Matrix6& jacobian : jacobians) jacobian.topRows<3>() = (turned * jacobian.topRows<3>()).eval();
       for (int a = 0; a < 2; ++a) {

@@ -46,8 +46,8 @@ Outcome solve(const LinkGraph& graph, const std::vector<Transformation>& truth) 
   for (const double error : poses.errors) outcome.kept.push_back(error < max_loop_error);
   for (const std::size_t i : outcome.components.front()) {
     const std::size_t first = outcome.components.front().front();
-    const Transformation difference = truth[first].inverse() * truth[i] * poses.world_from_scan[i].inverse() *
-                                      poses.world_from_scan[first];
+    const Transformation difference =
+        truth[first].inverse() * truth[i] * poses.world_from_scan[i].inverse() * poses.world_from_scan[first];
     outcome.worst = std::max(outcome.worst, difference.translation().norm());
   }
   return outcome;
@@ -103,8 +103,8 @@ TEST(PoseGraph, MinimumHasNoGradient) {
   const auto loss = [&](const std::vector<Transformation>& world) {
     double sum = 0;
     for (const GraphLink& link : graph.links) {
-      const Vector6 step = step_about(link.centre, world[link.target].inverse() * world[link.source] *
-                                                       link.target_from_source.inverse());
+      const Vector6 step = step_about(
+          link.centre, world[link.target].inverse() * world[link.source] * link.target_from_source.inverse());
       const double squared = step.dot(link.information * step), scale = max_loop_error / 9;
       sum += scale * squared / (scale + squared);
     }
@@ -179,8 +179,7 @@ TEST(PoseGraph, FindsFortyPoisonedLinksOf179) {
     std::set<Edge> taken;
     const auto add = [&](std::size_t a, std::size_t b, bool is_right) {
       if (a == b || !taken.insert(std::minmax(a, b)).second) return;
-      graph.links.push_back(
-          link_between(truth, a, b, is_right ? dice.step(0.002, 0.2) : dice.step(1.5, 200)));
+      graph.links.push_back(link_between(truth, a, b, is_right ? dice.step(0.002, 0.2) : dice.step(1.5, 200)));
       right.push_back(is_right);
     };
     for (std::size_t i = 0; i < 60; ++i) add((i + 1) % 60, i, true);

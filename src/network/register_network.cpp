@@ -96,11 +96,13 @@ Network register_network(std::span<const Features> scans, const NetworkOptions& 
                          const ProgressCallback& progress) {
   for (const Features& one : scans) {
     if (one.voxel_size == scans[0].voxel_size) continue;
-    throw InvalidArgument(fmt::format("the features of two scans were extracted with voxel_size {} and {}; all must be "
-                                      "the same",
-                                      scans[0].voxel_size, one.voxel_size));
+    throw InvalidArgument(
+        fmt::format("the features of two scans were extracted with voxel_size {} and {}; all must be "
+                    "the same",
+                    scans[0].voxel_size, one.voxel_size));
   }
-  return register_network(scans.size(), [&](std::size_t i) { return scans[i]; }, options, progress);
+  return register_network(
+      scans.size(), [&](std::size_t i) { return scans[i]; }, options, progress);
 }
 
 Network register_network(std::span<const Scan> scans, const NetworkOptions& options, const ProgressCallback& progress) {

@@ -56,7 +56,8 @@ void write_outputs(const fs::path& folder, const NamedNetwork& named, const Netw
 }
 
 int exit_code(const Network& network) {
-  const bool all_read = std::ranges::all_of(network.scans, [](const NetworkScan& scan) { return scan.problem.empty(); });
+  const bool all_read =
+      std::ranges::all_of(network.scans, [](const NetworkScan& scan) { return scan.problem.empty(); });
   if (!all_read) return exit_input_output;
   return network.components.size() == 1 ? exit_registered : exit_not_registered;
 }
@@ -90,7 +91,8 @@ int run_network(const NetworkSettings& settings) {
 }
 
 constexpr const char* notes =
-    "SCANS are files, or folders for all point clouds in them (but .txt and .csv must be named). The folder of -o gets\n"
+    "SCANS are files, or folders for all point clouds in them (but .txt and .csv must be named). The folder of -o "
+    "gets\n"
     "  poses.csv     scan,component,qw,qx,qy,qz,tx,ty,tz: world_from_scan; every component has a world of its own,\n"
     "                the frame of its first scan; a scan that could not be placed is a component of its own\n"
     "  links.csv     every pair that was tried: used, unconfirmed (in no loop), rejected or not_registered, and why\n"

@@ -36,7 +36,8 @@ std::string groups(const Network& network) {
   std::string text;
   for (const std::vector<std::size_t>& component : network.components) {
     if (component.size() < 2) continue;
-    text += fmt::format("{}{} in {}", text.empty() ? "" : ", ", component.size(), text.empty() ? "one frame" : "another");
+    text +=
+        fmt::format("{}{} in {}", text.empty() ? "" : ", ", component.size(), text.empty() ? "one frame" : "another");
   }
   return text;
 }
@@ -100,7 +101,8 @@ std::string network_summary(const NamedNetwork& named) {
   std::string text = fmt::format("registered {} of {} scans", placed, network.scans.size());
   if (placed > 0) text += ": " + groups(network);
   if (number_alone > 0) text += fmt::format("; {} alone ({})", number_alone, alone);
-  const std::size_t unconfirmed = count(network, LinkState::unconfirmed), rejected = count(network, LinkState::rejected);
+  const std::size_t unconfirmed = count(network, LinkState::unconfirmed),
+                    rejected = count(network, LinkState::rejected);
   text += fmt::format("\n{} of {} pairs registered, {} rejected by the network, {} links are unconfirmed (in no loop)",
                       network.links.size() - count(network, LinkState::not_registered), network.links.size(), rejected,
                       unconfirmed);

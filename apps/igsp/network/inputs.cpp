@@ -21,7 +21,8 @@ constexpr double suspicious_ratio = 100;  // of extents: millimetres among metre
 
 // Not .txt and .csv: in a folder of scans these are as a rule something else. They can be named one by one.
 bool is_cloud(const fs::path& path) {
-  static const std::set<std::string> extensions = {".ply", ".pcd", ".xyz", ".pts", ".asc", ".las", ".laz", ".e57", ".ptx"};
+  static const std::set<std::string> extensions = {".ply", ".pcd", ".xyz", ".pts", ".asc",
+                                                   ".las", ".laz", ".e57", ".ptx"};
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
   return extensions.contains(extension);
@@ -121,8 +122,9 @@ FirstLook look_at_scans(const ScanReading& reading, const ScaleOptions& scale, c
   const double median = sorted[sorted.size() / 2].first;
   for (const auto& [extent, file] : extents) {
     if (extent < suspicious_ratio * median && median < suspicious_ratio * extent) continue;
-    look.warnings.push_back(fmt::format("{}: in another unit than the others? Its extent is {:.4g}, their median {:.4g}",
-                                        file.string(), extent, median));
+    look.warnings.push_back(
+        fmt::format("{}: in another unit than the others? Its extent is {:.4g}, their median {:.4g}", file.string(),
+                    extent, median));
   }
   return look;
 }
