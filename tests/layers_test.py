@@ -20,7 +20,7 @@ ALLOWED = {
     "estimation": FEATURES | {"estimation"},
     "registration": REGISTRATION,
     "io": SPATIAL | {"io"},
-    "config": SPATIAL | {"config"},
+    "config": SPATIAL | {"io", "config"},
     "archive": SPATIAL | {"io", "config", "archive"},
     "simulation": SPATIAL | {"simulation"},
 }
