@@ -167,6 +167,26 @@ class SideInputs(CommandTest):
         self.refuses("benchmark", "list.csv", code=3, saying="line 1: the line is longer than")
 
 
+class Streaming(CommandTest):
+    def test_the_order_of_a_streamed_cloud_chooses_nothing(self):
+        rows = read_ply(self.source)[0]
+        voxel_sizes, samples = [], []
+        for seed in range(3):
+            shuffled = self.cloud("shuffled.ply", np.random.default_rng(seed).permutation(rows))
+            self.igsp("align", shuffled, self.target, "--max-points", "10000", "--report", "r.json")
+            report = json.loads((self.folder / "r.json").read_text())
+            self.assertTrue(report["source"]["streamed"])
+            voxel_sizes.append(report["voxel_size"])
+            samples.append(report["source"]["voxels"])
+        np.testing.assert_allclose(voxel_sizes, voxel_sizes[0], rtol=1e-9)
+        self.assertEqual(samples, [samples[0]] * 3)
+
+    def test_points_without_number_at_one_place_do_not_push_out_the_others(self):
+        rows = np.concatenate([np.zeros((200_000, 3)), read_ply(self.source)[0]])
+        mixed = self.cloud("mixed.ply", rows)
+        self.igsp("align", mixed, self.target, "--max-points", "10000")
+
+
 class Resources(CommandTest):
     def test_no_thread_can_be_started(self):
         if os.geteuid() != 0:
