@@ -15,7 +15,10 @@ constexpr double pull_floor = 0.1;  // [voxels]
 // What is right within two or three voxels is right; loops are judged by it.
 constexpr double judging_floor = 0.7;  // [voxels]
 
-constexpr double doubtful_violation = 0.06;  // beyond it a pair needs others to confirm it
+// Right poses have at most 0.05 (docs/network.md); beyond the first a pair needs others to confirm it, beyond the
+// second it is out.
+constexpr double doubtful_violation = 0.06;
+constexpr double forbidden_violation = 0.12;
 
 constexpr double least_weight = 0.1, greatest_weight = 5;  // log odds
 
@@ -68,9 +71,7 @@ MeasuredGraph measured_graph(std::span<const NetworkLink> links, std::span<const
   MeasuredGraph measured;
   for (const ScanShape& shape : shapes) measured.graph.centres.push_back(shape.centre / voxel_size);
   for (std::size_t i = 0; i < links.size(); ++i) {
-    if (links[i].state == LinkState::not_registered || links[i].state == LinkState::rejected ||
-        contradicts_free_space(links[i]))
-      continue;
+    if (links[i].state == LinkState::not_registered || contradicts_free_space(links[i])) continue;
     measured.graph.links.push_back(
         graph_link(links[i], shapes[links[i].source], voxel_size, min_unconfirmed_confidence));
     measured.link_of.push_back(i);

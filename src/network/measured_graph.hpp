@@ -24,9 +24,6 @@ struct MeasuredGraph {
 MeasuredGraph measured_graph(std::span<const NetworkLink> links, std::span<const ScanShape> shapes, double voxel_size,
                              double min_unconfirmed_confidence);
 
-/// Right poses have a violation of at most 0.05 (docs/network.md); beyond this a pair is out.
-inline constexpr double forbidden_violation = 0.12;
-
 /// True where the free space forbids a pair, whatever else speaks for it.
 bool contradicts_free_space(const NetworkLink& link);
 

@@ -8,7 +8,6 @@
 #include "network/decide.hpp"
 #include "network/joint_refinement.hpp"
 #include "network/pairs.hpp"
-#include "network/survey_free_space.hpp"
 
 namespace igsp {
 namespace {
@@ -58,21 +57,6 @@ Gathered gather(std::size_t count, const FeatureSource& source, const ProgressCa
   return gathered;
 }
 
-// Decides again without the links that the free space of the whole survey speaks against, until none is left.
-void decide_with_free_space(Network& network, std::span<const Features* const> features,
-                            std::span<const ScanShape> shapes, const NetworkOptions& options) {
-  std::vector<NetworkLink> links = network.links;
-  SurveyFreeSpace survey(features, network.voxel_size);
-  for (;;) {
-    decide(network, shapes, options);
-    const std::optional<std::size_t> link = survey.contradicted_link(network);
-    if (!link) return;
-    links[*link].state = LinkState::rejected;
-    links[*link].reason = "in no loop, and scans that it joins stand in what others saw to be empty";
-    network.links = links;
-  }
-}
-
 }  // namespace
 
 std::string_view to_string(LinkState state) {
@@ -105,7 +89,7 @@ Network register_network(std::size_t scans, const FeatureSource& features, const
   network.links = register_pairs(all_pairs(network.scans), views, options.pair, store,
                                  [&](double done) { report(progress, "pairs", done); });
   report(progress, "pairs", 1);
-  decide_with_free_space(network, views, shapes, options);
+  decide(network, shapes, options);
   report(progress, "network", 0);
   if (options.pair.refinement.enabled) refine_jointly(network, views, options.pair);
   measure_residuals(network, shapes);
