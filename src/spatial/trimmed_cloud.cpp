@@ -46,7 +46,8 @@ Range crowd_of(const std::array<std::size_t, bins>& counts, std::size_t max_outs
       const std::size_t begin = i;
       while (i < bins && count(i) == 0) ++i;
       if (i == bins) break;
-      if (static_cast<double>(i - begin) >= min_gap * static_cast<double>(bins - i)) result = i;
+      const bool is_gap = static_cast<double>(i - begin) >= min_gap * static_cast<double>(bins - i);
+      if (is_gap && passed > 0) result = i;
       passed += count(i);
     }
     return result;
