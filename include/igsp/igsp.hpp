@@ -7,3 +7,4 @@
 #include "igsp/io.hpp"
 #include "igsp/simulation.hpp"
 #include "igsp/version.hpp"
+#include "igsp/viewpoint.hpp"

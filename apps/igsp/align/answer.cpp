@@ -28,7 +28,11 @@ std::string timing_table(const Result& result) {
 }
 
 std::string cloud_line(std::string_view name, const CloudSummary& cloud) {
-  return fmt::format("{:<11} {} points, {} voxels, {} keypoints\n", name, cloud.points, cloud.voxels, cloud.keypoints);
+  const auto coordinates = [](const Eigen::Vector3d& at) {
+    return fmt::format("{:.6g}", fmt::join(at.begin(), at.end(), ", "));
+  };
+  return fmt::format("{:<11} {} points, {} voxels, {} keypoints, scanner {}\n", name, cloud.points, cloud.voxels,
+                     cloud.keypoints, cloud.viewpoint ? "at " + coordinates(*cloud.viewpoint) : "unknown");
 }
 
 }  // namespace
