@@ -5,6 +5,7 @@
 #include "igsp/errors.hpp"
 #include "igsp/evaluation.hpp"
 #include "igsp/io.hpp"
+#include "igsp/network.hpp"
 #include "igsp/simulation.hpp"
 #include "igsp/version.hpp"
 #include "igsp/viewpoint.hpp"
