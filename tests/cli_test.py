@@ -157,8 +157,8 @@ class Align(CommandTest):
 
     def test_a_viewpoint_that_its_cloud_contradicts_is_not_used_unless_insisted_on(self):
         rng = np.random.default_rng(1)
-        walls = rng.uniform(-1, 1, (20000, 3))
-        walls[np.arange(20000), rng.integers(0, 3, 20000)] = rng.choice([-1, 1], 20000)
+        walls = rng.uniform(-1, 1, (50000, 3))
+        walls[np.arange(50000), rng.integers(0, 3, 50000)] = rng.choice([-1, 1], 50000)
         room = self.cloud("room.ply", walls * [5, 4, 2])
         behind = "-5.5,0,0"
         run = self.igsp("align", room, room, f"--source-viewpoint={behind}", "--report", "r.json", code=None)

@@ -29,9 +29,10 @@ struct HiddenPoints {
   double compared = 0.0;  ///< share of the points with another one in the same direction: few prove little, [0, 1]
 };
 
-/// Directions are about 1 degree wide, 3 for sparse clouds; well behind is by 1/50 of the cloud's size. Points may come
-/// in any order. Throws InvalidArgument (empty cloud, non-finite point or viewpoint).
-HiddenPoints hidden_points(PointView points, const Eigen::Vector3d& viewpoint);
+/// Directions are so wide that `to_a_right_angle` of them make one, in [1, 1000]: wide ones hide more of a floor at a
+/// grazing angle, narrow ones let a sparse wall be seen through. Well behind is by 1/50 of the cloud's size. Points may
+/// come in any order. Throws InvalidArgument (empty cloud, non-finite point or viewpoint).
+HiddenPoints hidden_points(PointView points, const Eigen::Vector3d& viewpoint, int to_a_right_angle = 30);
 
 /// A scanner's viewpoint and why it is believed.
 struct ViewpointFinding {

@@ -6,6 +6,7 @@
 namespace igsp {
 namespace {
 
+constexpr int finer_far_away = 3;  // the whole cloud in one image, which is as wide as a right angle about a scanner
 constexpr double surrounds = 1.5;  // radii: nearer, an image of the whole would be wider than a face of the cube
 
 std::uint32_t cell_along(double position, double half_width, std::uint32_t size) {
@@ -19,7 +20,7 @@ DirectionImage::DirectionImage(const Eigen::Vector3d& viewpoint, const Eigen::Ve
                                int cells_per_face)
     : viewpoint_(viewpoint),
       far_((centre - viewpoint).norm() > surrounds * radius),
-      size_(static_cast<std::uint32_t>(cells_per_face)) {
+      size_(static_cast<std::uint32_t>(far_ ? finer_far_away * cells_per_face : cells_per_face)) {
   if (!far_) return;
   const double distance = (centre - viewpoint).norm();
   half_width_ = radius / std::sqrt((distance - radius) * (distance + radius));

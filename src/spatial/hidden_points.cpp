@@ -15,8 +15,6 @@ namespace {
 
 constexpr double tolerance = 1.0 / 50;  // of the cloud's size: what one surface at a grazing angle spans in a direction
 constexpr double stray = 0.002;         // share of the coordinates beyond the size, on each side
-constexpr int finest = 90, coarsest = 30;  // cells to a right angle
-constexpr double points_a_cell = 1;
 
 // Beyond, lines of sight are parallel to a millionth, and squares might overflow.
 constexpr double farthest = 1e6;  // sizes
@@ -44,21 +42,19 @@ Eigen::Vector3d not_too_far(const Eigen::Vector3d& viewpoint, const Eigen::Vecto
   return distance > limit ? Eigen::Vector3d(centre + offset * (limit / distance)) : viewpoint;
 }
 
-int cells_for(std::size_t points) {
-  const double cells = static_cast<double>(points) / points_a_cell;
-  return std::clamp(static_cast<int>(std::sqrt(cells / 6)), coarsest, finest);
-}
-
 }  // namespace
 
-HiddenPoints hidden_points(PointView points, const Eigen::Vector3d& position) {
+HiddenPoints hidden_points(PointView points, const Eigen::Vector3d& position, int to_a_right_angle) {
   bounds_of(points, "cloud");
   if (!position.allFinite()) throw InvalidArgument("viewpoint is not finite; three finite coordinates are needed");
+  if (to_a_right_angle < 1 || to_a_right_angle > 1000) {
+    throw InvalidArgument(fmt::format("to_a_right_angle = {} is not in [1, 1000]", to_a_right_angle));
+  }
   const Bounds bounds = main_bounds(points);
   const double size = bounds.diagonal();
   if (size == 0) return {};
   const Eigen::Vector3d centre = centre_of(bounds), viewpoint = not_too_far(position, centre, size);
-  const DirectionImage image(viewpoint, centre, 0.5 * size, cells_for(points.size()));
+  const DirectionImage image(viewpoint, centre, 0.5 * size, to_a_right_angle);
   std::vector<double> nearest(image.cells(), std::numeric_limits<double>::infinity());
   std::vector<std::uint32_t> seen(image.cells(), 0);
   std::vector<std::uint32_t> cell(points.size());

@@ -35,8 +35,9 @@ Points room_seen_from(const Vector3d& eye, std::size_t count, std::uint64_t seed
 const Vector3d eye(-1, -0.5, 0.2);
 
 TEST(HiddenPoints, NoneFromWhereTheScannerStood) {
-  const HiddenPoints found = hidden_points(room_seen_from(eye, 50000), eye);
+  const HiddenPoints found = hidden_points(room_seen_from(eye, 50000), eye, 90);
   EXPECT_LT(found.share, 0.01);
+  EXPECT_LT(hidden_points(room_seen_from(eye, 5000), eye).share, 0.1);
   EXPECT_GT(found.compared, 0.5);
 }
 
@@ -75,7 +76,7 @@ TEST(HiddenPoints, DegenerateCloudsHideNothing) {
 }
 
 TEST(FindViewpoint, WhatIsGivenIsUsedUnlessTheCloudContradicts) {
-  const Points room = room_seen_from(eye, 30000);
+  const Points room = room_seen_from(eye, 50000);
   const Vector3d behind_the_wall(-4.5, 0.3, 0);
   const auto given = [](const Vector3d& at, bool insist) {
     return ViewpointRequest{ViewpointRequest::Kind::given, at, insist};
@@ -92,7 +93,7 @@ TEST(FindViewpoint, WhatIsGivenIsUsedUnlessTheCloudContradicts) {
 }
 
 TEST(FindViewpoint, WhatTheFileSays) {
-  const Points room = room_seen_from(eye, 30000);
+  const Points room = room_seen_from(eye, 50000);
   EXPECT_EQ(find_viewpoint(room, {}, eye).viewpoint, eye);
   EXPECT_FALSE(find_viewpoint(room, {}, Vector3d(-4.5, 0.3, 0)).viewpoint);
   EXPECT_FALSE(find_viewpoint(room, {}, Vector3d(NAN, 0, 0)).viewpoint);
