@@ -23,6 +23,15 @@ template <typename Class>
 struct Layout {};
 
 template <>
+struct Layout<StrayPoints> {
+  static constexpr std::string_view name = "StrayPoints";
+  static constexpr std::tuple fields = {
+      Field{"count", &StrayPoints::count},
+      Field{"extents_away", &StrayPoints::extents_away},
+  };
+};
+
+template <>
 struct Layout<Features> {
   static constexpr std::string_view name = "Features";
   static constexpr std::tuple fields = {
@@ -37,6 +46,7 @@ struct Layout<Features> {
       Field{"frames", &Features::frames},
       Field{"descriptors", &Features::descriptors},
       Field{"cloud_points", &Features::cloud_points},
+      Field{"stray", &Features::stray},
       Field{"timings_s", &Features::timings_s},
   };
 };
@@ -76,6 +86,7 @@ struct Layout<CloudSummary> {
       Field{"points", &CloudSummary::points},
       Field{"voxels", &CloudSummary::voxels},
       Field{"keypoints", &CloudSummary::keypoints},
+      Field{"stray", &CloudSummary::stray},
       Field{"viewpoint", &CloudSummary::viewpoint},
   };
 };
@@ -194,7 +205,7 @@ struct Layout<SimulatedScan> {
 };
 
 using AllStructs =
-    std::tuple<Features, KeypointMatch, IterationRecord, CloudSummary, FreeDirection, Precision, FreeSpaceViolation,
+    std::tuple<StrayPoints, Features, KeypointMatch, IterationRecord, CloudSummary, FreeDirection, Precision, FreeSpaceViolation,
                FreeSpace, Evidence, RunnerUp, Result, PoseError, MatchQuality, SimulatedScan>;
 
 template <typename T>

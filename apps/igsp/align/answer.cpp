@@ -31,8 +31,11 @@ std::string cloud_line(std::string_view name, const CloudSummary& cloud) {
   const auto coordinates = [](const Eigen::Vector3d& at) {
     return fmt::format("{:.6g}", fmt::join(at.begin(), at.end(), ", "));
   };
-  return fmt::format("{:<11} {} points, {} voxels, {} keypoints, scanner {}\n", name, cloud.points, cloud.voxels,
-                     cloud.keypoints, cloud.viewpoint ? "at " + coordinates(*cloud.viewpoint) : "unknown");
+  std::string text =
+      fmt::format("{:<11} {} points, {} voxels, {} keypoints, scanner {}\n", name, cloud.points, cloud.voxels,
+                  cloud.keypoints, cloud.viewpoint ? "at " + coordinates(*cloud.viewpoint) : "unknown");
+  if (cloud.stray.count > 0) text += fmt::format("{:<11} {}\n", "", stray_text(cloud));
+  return text;
 }
 
 }  // namespace
@@ -49,6 +52,12 @@ std::string matrix_text(const Transformation& transformation) {
     for (int row = 0; row < 4; ++row) lines[row] += fmt::format("  {:>{}}", numbers[row], width);
   }
   return fmt::format("{}\n", fmt::join(lines, "\n"));
+}
+
+std::string stray_text(const CloudSummary& cloud) {
+  const bool one = cloud.stray.count == 1;
+  return fmt::format("{} of {} points {} {:.1f} extents away and {} left out", cloud.stray.count, cloud.points,
+                     one ? "lies" : "lie up to", cloud.stray.extents_away, one ? "was" : "were");
 }
 
 std::string answer_text(const Result& result, bool voxel_size_given, double seconds) {

@@ -31,6 +31,8 @@ Json to_json(const CloudInput& input, const CloudSummary& summary) {
           {"streamed", !input.whole()},
           {"voxels", summary.voxels},
           {"keypoints", summary.keypoints},
+          {"stray_points", summary.stray.count},
+          {"stray_extents_away", summary.stray.extents_away},
           {"viewpoint", summary.viewpoint ? Json(rows(summary.viewpoint->transpose())[0]) : Json(nullptr)},
           {"viewpoint_because", input.viewpoint.reason}};
 }
