@@ -13,16 +13,13 @@
 namespace igsp {
 namespace {
 
-// Fitted on simulated pairs of known truth, docs/verdict.md.
-constexpr double even_quality = 0.65;  // Q at which a pose is as likely right as wrong
-constexpr double steepness = 2.0;      // decades of the odds per unit of Q
-
 // Beyond this, more quality says nothing more about which of two poses is right: contact of 99.9 against 99.6 % is
 // noise.
-constexpr double certain_quality = 1.5;
+constexpr double certain_quality = 2.5;
 
+// Q is the logarithm of the odds that a pose is right.
 double odds(double quality) {
-  return std::pow(10.0, steepness * quality);
+  return std::pow(10.0, quality);
 }
 
 std::string free_motions(const std::vector<FreeDirection>& directions) {
@@ -107,7 +104,7 @@ void judge(CommonFrame& frame, const SearchOutcome& outcome, Result& result) {
   }
   result.evidence.rival_odds = rival_odds;
 
-  const double chance_odds = odds(even_quality - pose.quality);
+  const double chance_odds = odds(-pose.quality);
   result.confidence = 1.0 / (1.0 + chance_odds + rival_odds);
   const bool is_free = !result.precision.free_directions.empty();
   if (is_free) result.confidence = std::min(result.confidence, 0.1);
