@@ -21,7 +21,7 @@ ALLOWED = {
     "registration": REGISTRATION,
     "network": REGISTRATION | {"network"},
     "io": SPATIAL | {"io"},
-    "config": SPATIAL | {"config"},
+    "config": SPATIAL | {"io", "config"},
     "archive": SPATIAL | {"io", "config", "archive"},
     "simulation": SPATIAL | {"simulation"},
 }

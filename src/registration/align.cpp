@@ -39,8 +39,7 @@ Points keypoints_in_world(const Features& features) {
 CloudSummary summary_of(const Features& features) {
   std::optional<Eigen::Vector3d> viewpoint = features.viewpoint;
   if (viewpoint) *viewpoint += features.origin;
-  return {features.cloud_points, features.points.size(), features.keypoints.size(), features.stray,
-          viewpoint};
+  return {features.cloud_points, features.points.size(), features.keypoints.size(), features.stray, viewpoint};
 }
 
 void check_compatible(const Features& source, const Features& target) {

@@ -13,10 +13,10 @@
 namespace igsp {
 namespace {
 
-constexpr double max_voxels_per_point = 0.6;   // above it the voxels would only repeat the raw sampling
-constexpr double max_lonely = 0.6;             // of the voxels hold one point: an even sampling at the limit above has 0.55
-constexpr double lonely_per_step = 0.5;        // how fast their share falls with the logarithm of the voxel size, about
-constexpr int max_steps = 24;                  // dense clouds need 3 to 5, those limited by their spacing up to 12
+constexpr double max_voxels_per_point = 0.6;  // above it the voxels would only repeat the raw sampling
+constexpr double max_lonely = 0.6;       // of the voxels hold one point: an even sampling at the limit above has 0.55
+constexpr double lonely_per_step = 0.5;  // how fast their share falls with the logarithm of the voxel size, about
+constexpr int max_steps = 24;            // dense clouds need 3 to 5, those limited by their spacing up to 12
 constexpr double max_voxels_across = 1 << 18;  // a quarter of what the voxel filter holds: few places ask for more
 
 struct Occupancy {
@@ -24,8 +24,8 @@ struct Occupancy {
   double lonely;  // share of them that hold a single point, [0, 1]
 };
 
-// Without the voxels of scattered noise; by linear counting (Whang et al. 1990): n = -M ln(share of empty slots in a map
-// of M).
+// Without the voxels of scattered noise; by linear counting (Whang et al. 1990): n = -M ln(share of empty slots in a
+// map of M).
 Occupancy occupancy(PointView cloud, const Bounds& bounds, double noise_density, double voxel_size) {
   constexpr std::size_t slots = std::size_t{1} << 18;
   std::vector<std::uint8_t> map(slots, 0);  // points a slot, at most 2
@@ -40,7 +40,8 @@ Occupancy occupancy(PointView cloud, const Bounds& bounds, double noise_density,
   for (const std::uint8_t count : map) ++slots_of[count];
   const auto empty = static_cast<double>(std::max<std::size_t>(1, slots_of[0]));
   const auto occupied = static_cast<double>(std::max<std::size_t>(1, slots_of[1] + slots_of[2]));
-  return {std::max(1.0, -static_cast<double>(slots) * std::log(empty / slots)), static_cast<double>(slots_of[1]) / occupied};
+  return {std::max(1.0, -static_cast<double>(slots) * std::log(empty / slots)),
+          static_cast<double>(slots_of[1]) / occupied};
 }
 
 }  // namespace
@@ -60,7 +61,8 @@ double choose_voxel_size(const TrimmedCloud& source, const TrimmedCloud& target,
     const double to_count = std::sqrt(std::sqrt(in_source.voxels * in_target.voxels) / options.target_points);
     const double to_spacing = std::sqrt(std::max(in_source.voxels / (max_voxels_per_point * source.points().size()),
                                                  in_target.voxels / (max_voxels_per_point * target.points().size())));
-    const double lonely = 0.5 * (in_source.lonely + in_target.lonely);  // of one alone: the other may lie in its dense part
+    const double lonely =
+        0.5 * (in_source.lonely + in_target.lonely);  // of one alone: the other may lie in its dense part
     const double to_company = std::exp((lonely - max_lonely) / lonely_per_step);
     const double factor = std::max({to_count, to_spacing, to_company});
     voxel_size = std::max(factor * voxel_size, extent / max_voxels_across);
