@@ -6,15 +6,15 @@
 
 namespace igsp {
 
-/// Both clouds at voxels twice as large, made where they are first asked for: sparse surfaces close there, and searching
-/// costs a quarter. Refers to the features it comes from.
+/// Both clouds at voxels twice as large, made where they are first asked for: sparse surfaces close there, and
+/// searching costs a quarter. Refers to the features it comes from.
 class CoarserScale {
  public:
   CoarserScale(const Features& source, const Features& target, const Options& options)
       : source_(source), target_(target), options_(options) {}
 
-  bool is_there() const;   ///< not where a cloud would be left with too few voxels to say anything
-  CommonFrame& frame();    ///< only where `is_there`
+  bool is_there() const;  ///< not where a cloud would be left with too few voxels to say anything
+  CommonFrame& frame();   ///< only where `is_there`
 
  private:
   struct Clouds {

@@ -30,7 +30,7 @@ constexpr std::size_t fine_points = 8000;
 constexpr std::size_t max_last_steps = 10;
 constexpr std::size_t enough_agreeing = 15;
 constexpr double enough_agreement = 0.6;
-constexpr double rival_inliers = 0.5;  // of the winner's
+constexpr double rival_inliers = 0.5;    // of the winner's
 constexpr double settled_quality = 1.5;  // decades
 
 std::vector<Hypothesis> propose(CommonFrame& frame, const Options& options) {

@@ -8,7 +8,7 @@
 namespace igsp {
 namespace {
 
-constexpr double agreeing_distance = 2.5;   // voxels
+constexpr double agreeing_distance = 2.5;  // voxels
 // Log odds of 1 right to 1 wrong answer: docs/verdict.md tells how they were fitted.
 constexpr double contact_weight = 2.0, matches_weight = 2.0, missing_weight = 1.5, even = 4.4;
 constexpr double expected_agreement = 0.8;  // share of mutual matches that agree, over overlap: right poses have more

@@ -63,11 +63,9 @@ Json rows(const auto& matrix) {
 }
 
 Json to_json(const Evidence& evidence) {
-  return {{"mutual_matches", evidence.mutual_matches},
-          {"agreeing_matches", evidence.agreeing_matches},
-          {"contact_share", evidence.contact_share},
-          {"quality", evidence.quality},
-          {"rival_odds", evidence.rival_odds}};
+  return {{"mutual_matches", evidence.mutual_matches}, {"agreeing_matches", evidence.agreeing_matches},
+          {"contact_share", evidence.contact_share},   {"quality", evidence.quality},
+          {"rival_odds", evidence.rival_odds},         {"voxel_size", evidence.voxel_size}};
 }
 
 Json to_json(const std::optional<RunnerUp>& runner_up) {
