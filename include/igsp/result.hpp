@@ -91,9 +91,11 @@ struct Evidence {
   std::size_t mutual_matches = 0;    ///< mutual nearest neighbours among the descriptors in a common frame ...
   std::size_t agreeing_matches = 0;  ///< ... and those of them within 2.5 voxels
   double contact_share = 0.0;        ///< of the places where the surfaces meet, the share where they touch, (0, 1)
-  double quality = 0.0;              ///< Q of docs/method.md: both shares in one number, for the log odds
+  double quality = 0.0;              ///< Q of docs/method.md: what both say as log10 odds that the pose is right
   double rival_odds = 0.0;           ///< odds of the other poses that were looked into, against this one
   FreeSpace free_space;
+  double voxel_size =
+      0.0;  ///< at which the questions were asked [units of the cloud]: Result::voxel_size or twice that
 };
 
 /// The best other pose that was looked into.

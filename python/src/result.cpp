@@ -76,8 +76,10 @@ void bind_evidence(nb::module_& module) {
       .def_ro("agreeing_matches", &Evidence::agreeing_matches, "... and those of them within 2.5 voxels.")
       .def_ro("contact_share", &Evidence::contact_share,
               "Of the places where the surfaces meet, the share where they touch, (0, 1).")
-      .def_ro("quality", &Evidence::quality, "Both shares in one number, for the log odds.")
-      .def_ro("rival_odds", &Evidence::rival_odds, "Odds of the other poses that were looked into, against this one.");
+      .def_ro("quality", &Evidence::quality, "What both say as log10 odds that the pose is right.")
+      .def_ro("rival_odds", &Evidence::rival_odds, "Odds of the other poses that were looked into, against this one.")
+      .def_ro("voxel_size", &Evidence::voxel_size,
+              "At which the questions were asked [units of the cloud]: Result.voxel_size or twice that.");
   portable_class<RunnerUp>(module, "RunnerUp", "The best other pose that was looked into.")
       .def_prop_ro("target_from_source", &matrix<RunnerUp, &RunnerUp::target_from_source>, nb::rv_policy::automatic,
                    "(4, 4) float64.")

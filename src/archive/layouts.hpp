@@ -135,6 +135,7 @@ struct Layout<Evidence> {
       Field{"mutual_matches", &Evidence::mutual_matches}, Field{"agreeing_matches", &Evidence::agreeing_matches},
       Field{"contact_share", &Evidence::contact_share},   Field{"quality", &Evidence::quality},
       Field{"rival_odds", &Evidence::rival_odds},         Field{"free_space", &Evidence::free_space},
+      Field{"voxel_size", &Evidence::voxel_size},
   };
 };
 

@@ -12,4 +12,7 @@ void require_finite(const std::optional<Eigen::Vector3d>& viewpoint);
 Features extract_features(const TrimmedCloud& cloud, const std::optional<Eigen::Vector3d>& viewpoint,
                           const Options& options, const ProgressCallback& progress);
 
+/// The same cloud at voxels twice as large, from its finer ones.
+Features coarser_features(const Features& finer, const Options& options);
+
 }  // namespace igsp

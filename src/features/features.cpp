@@ -37,6 +37,21 @@ void describe_keypoints(const PointGrid& grid, const Options& options, const Sta
                   [&](double share) { clock.report(share); });
 }
 
+// Normals, keypoints and descriptors of the voxels.
+void describe(const Options& options, StageClock& clock, Features& features) {
+  clock.start("keypoints");
+  const double pca_radius = options.keypoints.pca_radius * features.voxel_size;
+  const PointGrid grid(features.points, 0.5 * pca_radius);
+  const LocalPca pca = local_pca(grid, pca_radius, options.threads, [&](double share) { clock.report(share); });
+  features.curvature = pca.curvature;
+  features.normals.resize(features.points.size());
+  for (std::size_t i = 0; i < features.points.size(); ++i) features.normals[i] = pca.normals[i].cast<double>();
+  features.keypoints = detect_keypoints(features.points, grid, pca, features.voxel_size, options.keypoints);
+
+  clock.start("descriptors");
+  describe_keypoints(grid, options, clock, features);
+}
+
 // Where single precision is at home, and back.
 Features extract_in_unit(double unit, const TrimmedCloud& cloud, const std::optional<Eigen::Vector3d>& viewpoint,
                          Options options, const ProgressCallback& progress) {
@@ -85,19 +100,25 @@ Features extract_features(const TrimmedCloud& trimmed, const std::optional<Eigen
   features.fine_points = voxel_centroids(cloud, bounds.min, fine_voxels * features.voxel_size);
   for (Eigen::Vector3d& point : features.fine_points) point -= to_centre;
 
-  clock.start("keypoints");
-  const double pca_radius = options.keypoints.pca_radius * features.voxel_size;
-  const PointGrid grid(features.points, 0.5 * pca_radius);
-  const LocalPca pca = local_pca(grid, pca_radius, options.threads, [&](double share) { clock.report(share); });
-  features.curvature = pca.curvature;
-  features.normals.resize(features.points.size());
-  for (std::size_t i = 0; i < features.points.size(); ++i) features.normals[i] = pca.normals[i].cast<double>();
-  features.keypoints = detect_keypoints(features.points, grid, pca, features.voxel_size, options.keypoints);
-
-  clock.start("descriptors");
-  describe_keypoints(grid, options, clock, features);
+  describe(options, clock, features);
   clock.finish();
   features.timings_s = clock.timings();
+  return features;
+}
+
+Features coarser_features(const Features& finer, const Options& options) {
+  const ProgressCallback silent;
+  StageClock clock(silent);
+  Features features;
+  features.origin = finer.origin;
+  features.viewpoint = finer.viewpoint;
+  features.voxel_size = 2 * finer.voxel_size;
+  // The corner of the finer voxels' grid is not known here, but any point that moves with the cloud serves.
+  features.points = voxel_centroids(finer.fine_points, Eigen::Vector3d::Zero(), features.voxel_size);
+  features.fine_points = finer.points;
+  features.cloud_points = finer.cloud_points;
+  features.stray = finer.stray;
+  describe(options, clock, features);
   return features;
 }
 

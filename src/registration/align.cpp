@@ -101,11 +101,12 @@ Result align_features(const Features& source, const Features& target, const Tran
   clock.start("common frame");
   const PreparedCloud prepared_source(source), prepared_target(target);
   CommonFrame frame(prepared_source, prepared_target, options.descriptor.radius * target.voxel_size, options.threads);
+  CoarserScale coarser(source, target, options);
   const SearchOutcome outcome = initial ? refine_initial(frame, to_local(*initial, source, target), options, clock)
                                 : options.search == Search::direct ? direct_search(frame, options, clock)
-                                                                   : hypotheses_search(frame, options, clock);
+                                                                   : hypotheses_search(frame, coarser, options, clock);
   clock.start("verdict");
-  judge(frame, outcome, result);
+  judge(frame, coarser, outcome, result);
   clock.finish();
 
   result.target_from_source = to_world(outcome.target_from_source, source, target);

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <iterator>
 
 #include "registration/hypotheses.hpp"
 #include "registration/igsp_loop.hpp"
@@ -28,7 +30,8 @@ constexpr std::size_t fine_points = 8000;
 constexpr std::size_t max_last_steps = 10;
 constexpr std::size_t enough_agreeing = 15;
 constexpr double enough_agreement = 0.6;
-constexpr double rival_inliers = 0.5;  // of the winner's
+constexpr double rival_inliers = 0.5;    // of the winner's
+constexpr double settled_quality = 1.5;  // decades
 
 std::vector<Hypothesis> propose(CommonFrame& frame, const Options& options) {
   const PreparedCloud &source = frame.source(), &target = frame.target();
@@ -134,21 +137,37 @@ std::vector<Rival> rank(CommonFrame& frame, std::span<const Rematch> candidates,
         settle(source, target, loop.target_from_source, target_cloud.features.voxel_size, options);
     ranked.push_back({pose, assess_pose(frame, pose)});
   }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Rival& a, const Rival& b) { return a.assessment.quality > b.assessment.quality; });
   return ranked;
+}
+
+// The best one explains the clouds well, and no other pose does nearly as well.
+bool is_settled(std::span<const Rival> ranked, double voxel_size) {
+  if (ranked.empty() || ranked.front().assessment.quality < settled_quality) return false;
+  return std::none_of(ranked.begin() + 1, ranked.end(), [&](const Rival& rival) {
+    return rival.assessment.quality > ranked.front().assessment.quality - settled_quality &&
+           !same_pose(rival.target_from_source, ranked.front().target_from_source, Eigen::Vector3d::Zero(), voxel_size);
+  });
+}
+
+// Proposes and screens at `scale`, refines and ranks at the finer one; `ranked` grows by what is new.
+void search_at(CommonFrame& scale, CommonFrame& finer, const Options& options, StageClock& clock,
+               std::vector<Rival>& ranked) {
+  clock.start("hypotheses");
+  const std::vector<Hypothesis> hypotheses = propose(scale, options);
+  clock.start("screening");
+  const std::vector<Rematch> screened = screen(scale, hypotheses, options, clock);
+  clock.start("ranking");
+  std::ranges::move(rank(finer, screened, options, clock), std::back_inserter(ranked));
+  std::ranges::stable_sort(ranked, std::greater(), [](const Rival& rival) { return rival.assessment.quality; });
 }
 
 }  // namespace
 
-SearchOutcome hypotheses_search(CommonFrame& frame, const Options& options, StageClock& clock) {
+SearchOutcome hypotheses_search(CommonFrame& frame, CoarserScale& coarser, const Options& options, StageClock& clock) {
+  std::vector<Rival> ranked;
+  if (coarser.is_there()) search_at(coarser.frame(), frame, options, clock, ranked);
+  if (!is_settled(ranked, frame.target().features.voxel_size)) search_at(frame, frame, options, clock, ranked);
   SearchOutcome outcome;
-  clock.start("hypotheses");
-  const std::vector<Hypothesis> hypotheses = propose(frame, options);
-  clock.start("screening");
-  const std::vector<Rematch> screened = screen(frame, hypotheses, options, clock);
-  clock.start("ranking");
-  const std::vector<Rival> ranked = rank(frame, screened, options, clock);
   if (ranked.empty()) return outcome;
 
   outcome.has_estimate = true;

@@ -8,8 +8,9 @@
 namespace igsp {
 namespace {
 
-constexpr double agreeing_distance = 2.5;   // voxels
-constexpr double chance_matches = 3.0;      // mutual matches that agree with a wrong pose now and then
+constexpr double agreeing_distance = 2.5;  // voxels
+// Log odds of 1 right to 1 wrong answer: docs/verdict.md tells how they were fitted.
+constexpr double contact_weight = 2.0, matches_weight = 2.0, missing_weight = 1.5, even = 4.4;
 constexpr double expected_agreement = 0.8;  // share of mutual matches that agree, over overlap: right poses have more
 
 double quality_of(const PoseAssessment& pose) {
@@ -17,10 +18,10 @@ double quality_of(const PoseAssessment& pose) {
   const double mutual = std::max(1.0, static_cast<double>(pose.mutual_matches));
   const double agreeing = static_cast<double>(pose.agreeing_matches);
   const double overlap = std::min(pose.source_on_target.overlap, pose.target_on_source.overlap);
-  const double beyond_chance = std::max(agreeing - chance_matches, 0.0) + 0.1;
   // Where much overlaps much must agree: the same architecture elsewhere lies well on itself, yet few features agree.
   const double missing = (agreeing + 0.1) / mutual / (expected_agreement * std::max(overlap, 0.02));
-  return 1.5 * std::log10(s / (1 - s)) + std::log10(beyond_chance / mutual) + 2.0 * std::log10(std::min(1.0, missing));
+  return contact_weight * std::log10(s / (1 - s)) + matches_weight * std::log10(agreeing + 1) +
+         missing_weight * std::log10(std::min(1.0, missing)) - even;
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ struct PreparedCloud {
   }
 
   const Features& features;
-  PointGrid grid;    ///< of the voxel centroids
-  Points keypoints;  ///< positions
+  PointGrid grid;                         ///< of the voxel centroids
+  Points keypoints;                       ///< positions
   std::optional<RangeImage> range_image;  ///< where the viewpoint is known
 };
 

@@ -50,6 +50,7 @@ void scale_lengths(Result& result, double factor) {
   if (runner_up) scale(*runner_up, factor);
   scale(precision, factor);
   rmse *= factor;
+  evidence.voxel_size *= factor;
   voxel_size *= factor;
   scale(source, factor);
   scale(target, factor);

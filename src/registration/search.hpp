@@ -4,6 +4,7 @@
 
 #include "core/stage_clock.hpp"
 #include "igsp/result.hpp"
+#include "registration/coarser_scale.hpp"
 #include "registration/common_frame.hpp"
 #include "registration/pose_assessment.hpp"
 
@@ -28,9 +29,10 @@ struct SearchOutcome {
 /// The paper: Algorithm 1 from feature distance alone.
 SearchOutcome direct_search(const CommonFrame& frame, const Options& options, StageClock& clock);
 
-/// Hypotheses from geometric consistency; screened, refined and ranked in a common frame; the best one through the
+/// Hypotheses from geometric consistency, at the coarser scale first; screened there in a common frame, refined and
+/// ranked at the finer scale. Where that settles nothing, the finer scale is searched as well. The best one through the
 /// hybrid loop to the end and, if asked for, point-to-plane refinement.
-SearchOutcome hypotheses_search(CommonFrame& frame, const Options& options, StageClock& clock);
+SearchOutcome hypotheses_search(CommonFrame& frame, CoarserScale& coarser, const Options& options, StageClock& clock);
 
 /// From an initial guess: no search, only the hybrid loop and the refinement; the verdict tells whether it held.
 SearchOutcome refine_initial(CommonFrame& frame, const Transformation& initial, const Options& options,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "registration/free_space.hpp"
 #include "registration/hypotheses.hpp"
@@ -13,16 +14,13 @@
 namespace igsp {
 namespace {
 
-// Fitted on simulated pairs of known truth, docs/verdict.md.
-constexpr double even_quality = 0.65;  // Q at which a pose is as likely right as wrong
-constexpr double steepness = 2.0;      // decades of the odds per unit of Q
-
 // Beyond this, more quality says nothing more about which of two poses is right: contact of 99.9 against 99.6 % is
 // noise.
-constexpr double certain_quality = 1.5;
+constexpr double certain_quality = 2.5;
 
+// Q is the logarithm of the odds that a pose is right.
 double odds(double quality) {
-  return std::pow(10.0, steepness * quality);
+  return std::pow(10.0, quality);
 }
 
 std::string free_motions(const std::vector<FreeDirection>& directions) {
@@ -88,9 +86,55 @@ std::vector<Rival> true_rivals(const CommonFrame& frame, const SearchOutcome& ou
   return rivals;
 }
 
+// What one scale says of a pose.
+struct Judgement {
+  PoseAssessment pose;
+  std::vector<Rival> rivals;
+  std::vector<FreeDirection> free_directions;
+  double rival_odds = 0, confidence = 0;
+};
+
+double confidence_of(const Judgement& judgement) {
+  const double confidence = 1.0 / (1.0 + odds(-judgement.pose.quality) + judgement.rival_odds);
+  return judgement.free_directions.empty() ? confidence : std::min(confidence, 0.1);
+}
+
+Judgement judgement_of(CommonFrame& frame, const Transformation& target_from_source, std::vector<Rival> rivals) {
+  Judgement judgement;
+  judgement.pose = assess_pose(frame, target_from_source);
+  judgement.free_directions = free_directions(frame.source(), frame.target(), target_from_source);
+  const double quality = std::min(judgement.pose.quality, certain_quality);
+  for (const Rival& rival : rivals) {
+    judgement.rival_odds += odds(std::min(rival.assessment.quality, certain_quality) - quality);
+  }
+  judgement.rivals = std::move(rivals);
+  judgement.confidence = confidence_of(judgement);
+  return judgement;
+}
+
+std::vector<Rival> assessed_at(CommonFrame& frame, std::vector<Rival> rivals) {
+  for (Rival& rival : rivals) rival.assessment = assess_pose(frame, rival.target_from_source);
+  std::ranges::stable_sort(rivals, std::greater(), [](const Rival& rival) { return rival.assessment.quality; });
+  return rivals;
+}
+
+// The best other pose, by its matches.
+std::optional<RunnerUp> runner_up_of(const Judgement& judgement) {
+  if (judgement.rivals.empty()) return std::nullopt;
+  const auto explained = static_cast<double>(judgement.rivals.front().assessment.agreeing_matches);
+  const double all = std::max(1.0, static_cast<double>(judgement.pose.agreeing_matches));
+  return RunnerUp{judgement.rivals.front().target_from_source, std::min(1.0, explained / all)};
+}
+
+std::string why_refused(const Judgement& judgement) {
+  return judgement.rival_odds > odds(-judgement.pose.quality)
+             ? "; ambiguous: another pose explains the clouds about as well"
+             : "; too little to tell it from chance";
+}
+
 }  // namespace
 
-void judge(CommonFrame& frame, const SearchOutcome& outcome, Result& result) {
+void judge(CommonFrame& frame, CoarserScale& coarser, const SearchOutcome& outcome, Result& result) {
   result.termination = outcome.termination;
   result.has_estimate = outcome.has_estimate;
   if (!outcome.has_estimate) {
@@ -98,42 +142,38 @@ void judge(CommonFrame& frame, const SearchOutcome& outcome, Result& result) {
     name_what_the_target_leaves_free(frame, result);
     return;
   }
-  const PoseAssessment pose = assess_pose(frame, outcome.target_from_source);
+  const std::vector<Rival> rivals = true_rivals(frame, outcome);
+  Judgement judgement = judgement_of(frame, outcome.target_from_source, rivals);
+  result.evidence.voxel_size = frame.target().features.voxel_size;
+  if (judgement.confidence < 0.5 && coarser.is_there()) {
+    Judgement other = judgement_of(coarser.frame(), outcome.target_from_source, assessed_at(coarser.frame(), rivals));
+    if (other.confidence > judgement.confidence) {
+      judgement = std::move(other);
+      result.evidence.voxel_size = coarser.frame().target().features.voxel_size;
+    }
+  }
+
+  const PoseAssessment& pose = judgement.pose;
   result.overlap_source = pose.source_on_target.overlap;
   result.overlap_target = pose.target_on_source.overlap;
   result.rmse = outcome.precision.inlier_rmse;
   result.precision = outcome.precision;
-  result.precision.free_directions = free_directions(frame.source(), frame.target(), outcome.target_from_source);
-  result.evidence = {pose.mutual_matches,
-                     pose.agreeing_matches,
-                     std::sqrt(pose.source_on_target.share * pose.target_on_source.share),
-                     pose.quality,
-                     0.0,
-                     free_space(frame.source(), frame.target(), outcome.target_from_source)};
-
-  const std::vector<Rival> rivals = true_rivals(frame, outcome);
-  if (!rivals.empty()) {
-    const double explained = static_cast<double>(rivals.front().assessment.agreeing_matches);
-    const double all = std::max(1.0, static_cast<double>(pose.agreeing_matches));
-    result.runner_up = RunnerUp{rivals.front().target_from_source, std::min(1.0, explained / all)};
-  }
-  double rival_odds = 0;
-  for (const Rival& rival : rivals) {
-    rival_odds += odds(std::min(rival.assessment.quality, certain_quality) - std::min(pose.quality, certain_quality));
-  }
-  result.evidence.rival_odds = rival_odds;
-
-  const double chance_odds = odds(even_quality - pose.quality);
-  result.confidence = 1.0 / (1.0 + chance_odds + rival_odds);
-  const bool is_free = !result.precision.free_directions.empty();
-  if (is_free) result.confidence = std::min(result.confidence, 0.1);
+  result.precision.free_directions = judgement.free_directions;
+  result.evidence.mutual_matches = pose.mutual_matches;
+  result.evidence.agreeing_matches = pose.agreeing_matches;
+  result.evidence.contact_share = std::sqrt(pose.source_on_target.share * pose.target_on_source.share);
+  result.evidence.quality = pose.quality;
+  result.evidence.rival_odds = judgement.rival_odds;
+  result.evidence.free_space = free_space(frame.source(), frame.target(), outcome.target_from_source);
+  result.runner_up = runner_up_of(judgement);
+  result.confidence = judgement.confidence;
   result.registered = result.confidence >= 0.5;
 
+  const bool is_free = !judgement.free_directions.empty();
   result.reason = in_words(result);
-  if (is_free) result.reason += "; not fixed by the surfaces: " + free_motions(result.precision.free_directions);
+  if (is_free) result.reason += "; not fixed by the surfaces: " + free_motions(judgement.free_directions);
   if (!result.registered && !is_free) {
-    result.reason += rival_odds > chance_odds ? "; ambiguous: another pose explains the clouds about as well"
-                                              : "; too little to tell it from chance";
+    result.reason += why_refused(judgement);
     name_what_the_target_leaves_free(frame, result);
   }
 }

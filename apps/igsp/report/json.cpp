@@ -78,7 +78,8 @@ Json to_json(const FreeSpace& free_space) {
 Json to_json(const Evidence& evidence) {
   return {{"mutual_matches", evidence.mutual_matches}, {"agreeing_matches", evidence.agreeing_matches},
           {"contact_share", evidence.contact_share},   {"quality", evidence.quality},
-          {"rival_odds", evidence.rival_odds},         {"free_space", to_json(evidence.free_space)}};
+          {"rival_odds", evidence.rival_odds},         {"free_space", to_json(evidence.free_space)},
+          {"voxel_size", evidence.voxel_size}};
 }
 
 Json to_json(const std::optional<RunnerUp>& runner_up) {
