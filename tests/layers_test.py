@@ -19,12 +19,13 @@ ALLOWED = {
     "matching": FEATURES | {"matching"},
     "estimation": FEATURES | {"estimation"},
     "registration": REGISTRATION,
+    "diagnosis": REGISTRATION | {"diagnosis"},
     "io": SPATIAL | {"io"},
     "config": SPATIAL | {"config"},
     "archive": SPATIAL | {"io", "config", "archive"},
     "simulation": SPATIAL | {"simulation"},
 }
-APPS_ALLOWED = REGISTRATION | {"io", "config", "archive", "simulation"}
+APPS_ALLOWED = REGISTRATION | {"diagnosis", "io", "config", "archive", "simulation"}
 # The rooms of the command, in apps/igsp/: a command's room may use these below it and itself; command_line.cpp, all.
 SHARED_ROOMS = {"shell": set(), "files": {"shell"}, "report": {"shell", "files"}}
 COMMAND_ROOMS = {"align", "benchmark", "completion", "evaluate", "options", "simulate"}

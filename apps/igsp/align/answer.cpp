@@ -47,8 +47,10 @@ std::string matrix_text(const Transformation& transformation) {
   return fmt::format("{}\n", fmt::join(lines, "\n"));
 }
 
-std::string answer_text(const Result& result, bool voxel_size_given, double seconds) {
+std::string answer_text(const Result& result, const std::vector<Diagnosis>& diagnosis, bool voxel_size_given,
+                        double seconds) {
   std::string text = fmt::format("{}: {}\n", result.registered ? "registered" : "not registered", result.reason);
+  for (const Diagnosis& cause : diagnosis) text += fmt::format("diagnosis: {}\n", cause.description);
   if (result.has_estimate) {
     text += result.registered ? "target_from_source\n" : "best estimate of target_from_source, not to be relied on\n";
     text += matrix_text(result.target_from_source);
