@@ -309,6 +309,7 @@ class Others(PageTest):
         self.assertGreater(self.pixels()["drawn"], 0)
 
     def test_it_names_the_cause_of_the_refusal(self):
+        self.open("line.html")
         self.assertTrue(self.find("diagnosis").is_displayed())
         self.assertIn("All points of both clouds lie on a line", self.find("diagnosis").text)
 

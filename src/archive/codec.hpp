@@ -55,7 +55,7 @@ template <typename T>
 struct Listed;
 template <>
 struct Listed<Termination> {
-  static constexpr std::string_view name = "termination";
+  static constexpr std::string_view name = "termination reason";
   static constexpr Termination last = Termination::degenerate_matches;
 };
 template <>
