@@ -115,6 +115,7 @@ int run(int argc, char** argv, ForeignFormats formats) {
   app.get_formatter()->column_width(help_column);
   Command command;
   add_align_command(app, command);
+  add_network_command(app, command);
   add_report_command(app, command);
   add_evaluate_command(app, command);
   add_benchmark_command(app, command);

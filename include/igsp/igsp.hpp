@@ -6,5 +6,6 @@
 #include "igsp/errors.hpp"
 #include "igsp/evaluation.hpp"
 #include "igsp/io.hpp"
+#include "igsp/network.hpp"
 #include "igsp/simulation.hpp"
 #include "igsp/version.hpp"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "benchmark/csv.hpp"
+#include "files/csv.hpp"
 #include "igsp/errors.hpp"
 #include "io/number_text.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <iostream>
 
-#include "benchmark/csv.hpp"
 #include "benchmark/pair.hpp"
+#include "files/csv.hpp"
 #include "files/output_file.hpp"
 #include "igsp/errors.hpp"
 #include "igsp/io.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "benchmark/csv.hpp"
+#include "files/csv.hpp"
 
 namespace igsp::cli {
 

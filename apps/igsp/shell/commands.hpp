@@ -10,6 +10,7 @@ using Command = std::function<int()>;
 
 // Each adds its subcommand to the command line; the subcommand stores what to run in `command`.
 void add_align_command(CLI::App& app, Command& command);
+void add_network_command(CLI::App& app, Command& command);
 void add_report_command(CLI::App& app, Command& command);
 void add_evaluate_command(CLI::App& app, Command& command);
 void add_benchmark_command(CLI::App& app, Command& command);

@@ -1,0 +1,136 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+
+#include "files/columns_flag.hpp"
+#include "files/output_file.hpp"
+#include "igsp/errors.hpp"
+#include "network/inputs.hpp"
+#include "network/outputs.hpp"
+#include "shell/commands.hpp"
+#include "shell/exit_codes.hpp"
+#include "shell/help_text.hpp"
+#include "shell/interrupt.hpp"
+#include "shell/option_flags.hpp"
+#include "shell/progress_bar.hpp"
+
+namespace igsp::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct NetworkSettings {
+  std::vector<fs::path> scans;
+  fs::path folder, viewpoints;
+  ReadOptions read;
+  std::int64_t max_points = 20'000'000;
+  NetworkOptions options;
+  bool quiet = false;
+  std::shared_ptr<OptionFlags> option_flags;
+};
+
+void create_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw FileError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
+  check_writable(folder / "poses.csv");
+}
+
+ScanReading reading_of(const NetworkSettings& settings) {
+  ScanReading reading;
+  reading.files = scan_files(settings.scans);
+  if (reading.files.size() < 2) throw InvalidArgument("a network needs at least two scans");
+  if (!settings.viewpoints.empty()) reading.viewpoints = read_viewpoints(settings.viewpoints, reading.files);
+  reading.read = settings.read;
+  reading.max_points = static_cast<std::size_t>(settings.max_points);
+  return reading;
+}
+
+void write_outputs(const fs::path& folder, const NamedNetwork& named, const NetworkOptions& options) {
+  write_text(folder / "links.csv", links_csv(named));
+  write_text(folder / "network.json", report_text(network_json(named, options)));
+  write_text(folder / "network.g2o", network_g2o(named));
+  write_text(folder / "poses.tum", poses_tum(named));
+  write_text(folder / "poses.csv", poses_csv(named));
+}
+
+int exit_code(const Network& network) {
+  const bool all_read =
+      std::ranges::all_of(network.scans, [](const NetworkScan& scan) { return scan.problem.empty(); });
+  if (!all_read) return exit_input_output;
+  return network.components.size() == 1 ? exit_registered : exit_not_registered;
+}
+
+int run_network(const NetworkSettings& settings) {
+  NetworkOptions options = settings.options;
+  options.pair = resolve(*settings.option_flags);
+  if (settings.max_points < 1000) {
+    throw InvalidArgument(fmt::format("--max-points is {}; it must be at least 1000", settings.max_points));
+  }
+  const ScanReading reading = reading_of(settings);
+  create_folder(settings.folder);
+  ProgressBar bar(!settings.quiet);
+  const ProgressCallback progress = bar.callback();
+  if (options.pair.scale.voxel_size == 0) {
+    const FirstLook look = look_at_scans(reading, options.pair.scale, progress);
+    options.pair.scale.voxel_size = look.voxel_size;
+    for (const std::string& warning : look.warnings) {
+      if (!settings.quiet) std::cerr << "igsp: warning: " << warning << "\n";
+    }
+  }
+  const auto features = [&](std::size_t i) { return read_features(reading, i, options.pair, progress); };
+  const Network network = register_network(reading.files.size(), features, options, progress);
+  stop_if_interrupted();
+  bar.finish();
+  NamedNetwork named{network, {}};
+  for (const fs::path& file : reading.files) named.names.push_back(file.string());
+  write_outputs(settings.folder, named, options);
+  std::cout << network_summary(named);
+  return exit_code(network);
+}
+
+constexpr const char* notes =
+    "SCANS are files, or folders for all point clouds in them (but .txt and .csv must be named). The folder of -o "
+    "gets\n"
+    "  poses.csv     scan,component,qw,qx,qy,qz,tx,ty,tz: world_from_scan; every component has a world of its own,\n"
+    "                the frame of its first scan; a scan that could not be placed is a component of its own\n"
+    "  links.csv     every pair that was tried: used, unconfirmed (in no loop), rejected or not_registered, and why\n"
+    "  network.json  all of it, with covariances; network.g2o, poses.tum: for other programs\n"
+    "Example:\n"
+    "  igsp network scans/*.ply -o survey\n"
+    "Exit codes: 0 all scans in one frame, 1 not all, 2 usage or option, 3 a file that cannot be read (the others are\n"
+    "registered all the same) or written, 130 interrupted.";
+
+}  // namespace
+
+void add_network_command(CLI::App& app, Command& command) {
+  CLI::App* network = app.add_subcommand("network", "put many scans into one frame and say which links to trust");
+  const auto settings = std::make_shared<NetworkSettings>();
+  network->add_option("SCANS", settings->scans, "files or folders")->required()->type_name("");
+  network->add_option("-o,--output", settings->folder, "folder for the answer, made if missing")
+      ->required()
+      ->type_name("DIR");
+  network
+      ->add_option("--viewpoints", settings->viewpoints,
+                   wrapped("CSV, scan,x,y,z: where scanners stood, each in its scan's own frame; the space that they "
+                           "saw through is evidence against wrong links"))
+      ->type_name("FILE");
+  network
+      ->add_option("--min-unconfirmed-confidence", settings->options.min_unconfirmed_confidence,
+                   wrapped("a link in no loop joins scans only with at least this confidence, in [0.5, 1]; default "
+                           "0.8"))
+      ->type_name("NUMBER");
+  add_columns_flag(*network, settings->read);
+  network
+      ->add_option("--max-points", settings->max_points,
+                   wrapped("a cloud with more points is streamed through the voxel filter instead of kept whole; "
+                           "default 20000000"))
+      ->type_name("INTEGER");
+  network->add_flag("--quiet", settings->quiet, "no progress and no warnings, only the answer");
+  settings->option_flags = add_option_flags(*network);
+  network->footer(notes);
+  network->callback([settings, &command] { command = [settings] { return run_network(*settings); }; });
+}
+
+}  // namespace igsp::cli

@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "igsp/version.hpp"
+#include "network/outputs.hpp"
+
+namespace igsp::cli {
+namespace {
+
+Json rows(const Eigen::Matrix<double, 6, 6>& matrix) {
+  Json all = Json::array();
+  for (int i = 0; i < 6; ++i) {
+    Json row = Json::array();
+    for (int j = 0; j < 6; ++j) row.push_back(matrix(i, j));
+    all.push_back(row);
+  }
+  return all;
+}
+
+Json row(const Eigen::Vector3d& vector) {
+  return {vector.x(), vector.y(), vector.z()};
+}
+
+std::string short_name(const std::string& name) {
+  return std::filesystem::path(name).stem().string();
+}
+
+std::size_t count(const Network& network, LinkState state) {
+  return std::ranges::count_if(network.links, [&](const NetworkLink& link) { return link.state == state; });
+}
+
+// "26 in one frame, 2 in another"
+std::string groups(const Network& network) {
+  std::string text;
+  for (const std::vector<std::size_t>& component : network.components) {
+    if (component.size() < 2) continue;
+    text +=
+        fmt::format("{}{} in {}", text.empty() ? "" : ", ", component.size(), text.empty() ? "one frame" : "another");
+  }
+  return text;
+}
+
+}  // namespace
+
+Json network_json(const NamedNetwork& named, const NetworkOptions& options) {
+  const Network& network = named.network;
+  Json scans = Json::array(), links = Json::array();
+  for (std::size_t i = 0; i < network.scans.size(); ++i) {
+    const NetworkScan& scan = network.scans[i];
+    scans.push_back({{"name", named.names[i]},
+                     {"problem", scan.problem.empty() ? Json(nullptr) : Json(scan.problem)},
+                     {"points", scan.points},
+                     {"component", scan.component},
+                     {"world_from_scan", to_json(scan.world_from_scan)},
+                     {"centre", row(scan.centre)},
+                     {"covariance", rows(scan.covariance)}});
+  }
+  for (const NetworkLink& link : network.links) {
+    links.push_back({{"source", link.source},
+                     {"target", link.target},
+                     {"state", to_string(link.state)},
+                     {"reason", link.reason},
+                     {"target_from_source", to_json(link.target_from_source)},
+                     {"confidence", link.confidence},
+                     {"overlap", link.overlap},
+                     {"rmse", link.rmse},
+                     {"violation", link.violation},
+                     {"consistent_triangles", link.consistent_triangles},
+                     {"residual", link.residual},
+                     {"centre", row(link.precision.centre)},
+                     {"covariance", rows(link.precision.covariance)}});
+  }
+  return {{"igsp", version},
+          {"bundle_error", network.bundle_error},
+          {"voxel_size", network.voxel_size},
+          {"components", network.components},
+          {"scans", scans},
+          {"links", links},
+          {"min_unconfirmed_confidence", options.min_unconfirmed_confidence},
+          {"options", to_json(options.pair)}};
+}
+
+std::string network_summary(const NamedNetwork& named) {
+  const Network& network = named.network;
+  std::size_t placed = 0;
+  std::string alone, separator;
+  std::size_t number_alone = 0;
+  for (const std::vector<std::size_t>& component : network.components) {
+    if (component.size() > 1) {
+      placed += component.size();
+      continue;
+    }
+    ++number_alone;
+    const std::string& problem = network.scans[component.front()].problem;
+    alone += fmt::format("{}{}: {}", separator, short_name(named.names[component.front()]),
+                         problem.empty() ? "no overlap found" : problem);
+    separator = "; ";
+  }
+  std::string text = fmt::format("registered {} of {} scans", placed, network.scans.size());
+  if (placed > 0) text += ": " + groups(network);
+  if (number_alone > 0) text += fmt::format("; {} alone ({})", number_alone, alone);
+  const std::size_t unconfirmed = count(network, LinkState::unconfirmed),
+                    rejected = count(network, LinkState::rejected);
+  text += fmt::format("\n{} of {} pairs registered, {} rejected by the network, {} links are unconfirmed (in no loop)",
+                      network.links.size() - count(network, LinkState::not_registered), network.links.size(), rejected,
+                      unconfirmed);
+  if (placed > 0) text += fmt::format("; bundle error {:.3g}", network.bundle_error);
+  return text + "\n";
+}
+
+}  // namespace igsp::cli

@@ -1,0 +1,146 @@
+#include "network/inputs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <set>
+
+#include "files/cloud_input.hpp"
+#include "files/csv.hpp"
+#include "igsp/errors.hpp"
+#include "network/common_scale.hpp"
+
+namespace igsp::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double suspicious_ratio = 100;  // of extents: millimetres among metres are 1000
+
+// Not .txt and .csv: in a folder of scans these are as a rule something else. They can be named one by one.
+bool is_cloud(const fs::path& path) {
+  static const std::set<std::string> extensions = {".ply", ".pcd", ".xyz", ".pts", ".asc",
+                                                   ".las", ".laz", ".e57", ".ptx"};
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  return extensions.contains(extension);
+}
+
+std::vector<fs::path> clouds_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (entry.is_regular_file() && is_cloud(entry.path())) files.push_back(entry.path());
+  }
+  if (error) throw FileError(fmt::format("{}: cannot be listed: {}", folder.string(), error.message()));
+  if (files.empty()) throw FileError(fmt::format("{}: a folder without any point cloud", folder.string()));
+  std::ranges::sort(files);
+  return files;
+}
+
+double number_in(const CsvTable& table, const CsvRecord& record, std::size_t column) {
+  const std::string& text = record.fields[column];
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(number)) {
+    fail_at(table, record, column, fmt::format("\"{}\" is not a finite number", text));
+  }
+  return number;
+}
+
+std::size_t required_column(const CsvTable& table, std::string_view name) {
+  const std::optional<std::size_t> column = find_column(table, name);
+  if (!column) throw FileError(fmt::format("{}: has no column {}; scan,x,y,z are needed", table.path.string(), name));
+  return *column;
+}
+
+std::optional<fs::path> file_named(const std::string& name, const std::vector<fs::path>& files) {
+  for (const fs::path& file : files) {
+    if (file == name) return file;
+  }
+  for (const fs::path& file : files) {
+    if (file.filename() == name || file.stem() == name) return file;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<fs::path> scan_files(const std::vector<fs::path>& given) {
+  std::vector<fs::path> files;
+  for (const fs::path& path : given) {
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored)) {
+      const std::vector<fs::path> inside = clouds_in(path);
+      files.insert(files.end(), inside.begin(), inside.end());
+    } else {
+      files.push_back(path);
+    }
+  }
+  std::set<fs::path> seen;
+  for (const fs::path& file : files) {
+    if (!seen.insert(file.lexically_normal()).second) {
+      throw InvalidArgument(fmt::format("{} is given twice", file.string()));
+    }
+  }
+  return files;
+}
+
+std::map<fs::path, Eigen::Vector3d> read_viewpoints(const fs::path& path, const std::vector<fs::path>& files) {
+  const CsvTable table = read_csv(path);
+  const std::size_t scan = required_column(table, "scan"), x = required_column(table, "x"),
+                    y = required_column(table, "y"), z = required_column(table, "z");
+  std::map<fs::path, Eigen::Vector3d> viewpoints;
+  for (const CsvRecord& record : table.records) {
+    const std::optional<fs::path> file = file_named(record.fields[scan], files);
+    if (!file) fail_at(table, record, scan, fmt::format("\"{}\" is none of the scans given", record.fields[scan]));
+    viewpoints[*file] = {number_in(table, record, x), number_in(table, record, y), number_in(table, record, z)};
+  }
+  return viewpoints;
+}
+
+FirstLook look_at_scans(const ScanReading& reading, const ScaleOptions& scale, const ProgressCallback& progress) {
+  std::vector<double> own;
+  std::vector<std::pair<double, fs::path>> extents;
+  for (std::size_t i = 0; i < reading.files.size(); ++i) {
+    const std::string stage = fmt::format("look at {} of {}", i + 1, reading.files.size());
+    try {
+      const CloudInput cloud = read_cloud(reading.files[i], reading.max_points, stage, progress, reading.read);
+      extents.emplace_back(cloud.bounds.diagonal(), reading.files[i]);
+      own.push_back(own_voxel_size(cloud.points, scale));
+    } catch (const FileError&) {
+      // Said where the scan's features are read.
+    } catch (const InvalidArgument&) {
+    }
+  }
+  FirstLook look{common_voxel_size(std::move(own)), {}};
+  if (extents.empty()) return look;
+  std::vector<std::pair<double, fs::path>> sorted = extents;
+  std::ranges::nth_element(sorted, sorted.begin() + sorted.size() / 2);
+  const double median = sorted[sorted.size() / 2].first;
+  for (const auto& [extent, file] : extents) {
+    if (extent < suspicious_ratio * median && median < suspicious_ratio * extent) continue;
+    look.warnings.push_back(
+        fmt::format("{}: in another unit than the others? Its extent is {:.4g}, their median {:.4g}", file.string(),
+                    extent, median));
+  }
+  return look;
+}
+
+Features read_features(const ScanReading& reading, std::size_t scan, const Options& options,
+                       const ProgressCallback& progress) {
+  const fs::path& file = reading.files[scan];
+  const std::string stage = fmt::format("scan {} of {}", scan + 1, reading.files.size());
+  CloudInput cloud = read_cloud(file, reading.max_points, stage, progress, reading.read);
+  if (!cloud.whole()) cloud.points = read_centroids(cloud, options.scale.voxel_size / 4, stage, progress);
+  const auto viewpoint = reading.viewpoints.find(file);
+  Scan points(cloud.points);
+  if (viewpoint != reading.viewpoints.end()) points.viewpoint = viewpoint->second;
+  Features features = extract_features(points, options);
+  features.cloud_points = cloud.total;
+  return features;
+}
+
+}  // namespace igsp::cli

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "igsp/features.hpp"
+#include "igsp/io.hpp"
+#include "igsp/progress.hpp"
+
+namespace igsp::cli {
+
+/// Files as given; a folder stands for the point clouds in it, in the order of their names. Throws FileError for a
+/// folder without any, InvalidArgument for a file given twice.
+std::vector<std::filesystem::path> scan_files(const std::vector<std::filesystem::path>& given);
+
+/// scan,x,y,z: where scanners stood, each in its own scan's frame. A scan is named as on the command line, by its file
+/// name or by that without the extension. Throws FileError (also for a scan that is none of `files`).
+std::map<std::filesystem::path, Eigen::Vector3d> read_viewpoints(const std::filesystem::path& path,
+                                                                 const std::vector<std::filesystem::path>& files);
+
+/// How the scans of a network are read.
+struct ScanReading {
+  std::vector<std::filesystem::path> files;
+  std::map<std::filesystem::path, Eigen::Vector3d> viewpoints;
+  ReadOptions read;
+  std::size_t max_points = 20'000'000;
+};
+
+/// What a first look at all scans says.
+struct FirstLook {
+  double voxel_size = 0;              ///< for all; 0 if none can be read
+  std::vector<std::string> warnings;  ///< scans in another unit of length than the others
+};
+FirstLook look_at_scans(const ScanReading& reading, const ScaleOptions& scale, const ProgressCallback& progress);
+
+/// Throws FileError, InvalidArgument.
+Features read_features(const ScanReading& reading, std::size_t scan, const Options& options,
+                       const ProgressCallback& progress);
+
+}  // namespace igsp::cli

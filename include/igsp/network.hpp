@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "igsp/features.hpp"
+#include "igsp/options.hpp"
+#include "igsp/point_cloud.hpp"
+#include "igsp/progress.hpp"
+#include "igsp/result.hpp"
+
+namespace igsp {
+
+struct NetworkOptions {
+  Options pair;  ///< of the features and of every pair; its voxel size, if set, is that of all scans
+
+  /// A link in no loop joins scans only with at least this confidence, [0.5, 1].
+  double min_unconfirmed_confidence = 0.8;
+};
+
+/// What became of a pair of scans.
+enum class LinkState {
+  used,            ///< registered, and confirmed by at least one loop of other links
+  unconfirmed,     ///< registered and used, but in no loop: nothing else would notice if it were wrong
+  rejected,        ///< registered, and contradicted by the network
+  not_registered,  ///< tried; the pair itself gave no answer to rely on
+};
+std::string_view to_string(LinkState state);
+
+/// A pair that was tried.
+struct NetworkLink {
+  std::size_t source = 0;  ///< indices of scans
+  std::size_t target = 0;
+  LinkState state = LinkState::not_registered;
+  std::string reason;                                              ///< one sentence
+  Transformation target_from_source = Transformation::Identity();  ///< as the pair alone has it
+  double confidence = 0;                                           ///< of the pair alone, [0, 1]
+  double overlap = 0;                                              ///< the smaller of the two directions, [0, 1]
+  double rmse = 0;                                                 ///< inlier RMSE of the pair [units of the cloud]
+  double violation = 0;                                            ///< of free space, [0, 1)
+  std::size_t consistent_triangles = 0;  ///< loops of three registered links that close, with this one in it
+  double residual = 0;  ///< RMS displacement of the source's points, pair against network [units of the cloud]
+  Precision precision;  ///< of the pair alone
+};
+
+/// A scan and where it lies.
+struct NetworkScan {
+  std::string problem;        ///< why there is nothing to register, empty if there is
+  std::size_t component = 0;  ///< index into Network::components
+  Transformation world_from_scan = Transformation::Identity();
+  /// Of world_from_scan: a small motion on the left, in the world, rotation about x, y, z through `centre` [rad], then
+  /// translation [units of the cloud]. 0 for the scan whose frame is the component's world.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< centroid of its points, in the world
+  std::size_t points = 0;                            ///< as given
+};
+
+/// What `register_network` answers. Scans that do not connect stay in components of their own; a component's world is
+/// the frame of its first scan.
+struct Network {
+  std::vector<NetworkScan> scans;                    ///< in the order given
+  std::vector<NetworkLink> links;                    ///< all pairs that were tried
+  std::vector<std::vector<std::size_t>> components;  ///< scans, ascending; the largest component first
+  double bundle_error = 0;  ///< RMS of the residuals of the links that are used [units of the cloud]
+  double voxel_size = 0;    ///< [units of the cloud]
+};
+
+/// Hands out the features of scan i; called from the thread that called the library. What it throws (except Cancelled)
+/// becomes that scan's problem and does not stop the others.
+using FeatureSource = std::function<Features(std::size_t scan)>;
+
+/// Many scans into one frame, without initial poses: all pairs are registered; links that loops contradict are left
+/// out; the rest is balanced in a robust pose graph. All features must share one voxel size. Throws InvalidArgument
+/// (option out of range, different voxel sizes), Cancelled; scans that cannot be placed are an answer.
+Network register_network(std::span<const Features> scans, const NetworkOptions& options = {},
+                         const ProgressCallback& progress = {});
+
+/// The same with features that are made, or read, one after the other.
+Network register_network(std::size_t scans, const FeatureSource& features, const NetworkOptions& options = {},
+                         const ProgressCallback& progress = {});
+
+/// The easy door: from points, with one voxel size chosen for all scans.
+Network register_network(std::span<const Scan> scans, const NetworkOptions& options = {},
+                         const ProgressCallback& progress = {});
+
+}  // namespace igsp

@@ -1,0 +1,46 @@
+#include "network/cycles.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+namespace igsp {
+namespace {
+
+LinkStep towards(const LinkGraph& graph, std::size_t link, std::size_t scan) {
+  return {link, graph.links[link].target == scan};
+}
+
+}  // namespace
+
+std::vector<CycleSupport> cycle_support(const LinkGraph& graph) {
+  // Links of a scan to later ones, so that every triangle is met once, at its first scan.
+  std::vector<std::map<std::size_t, std::size_t>> later(graph.centres.size());
+  for (std::size_t l = 0; l < graph.links.size(); ++l) {
+    const auto [first, second] = std::minmax(graph.links[l].source, graph.links[l].target);
+    later[first].emplace(second, l);
+  }
+  std::vector<CycleSupport> found(graph.links.size());
+  for (std::size_t a = 0; a < later.size(); ++a) {
+    for (const auto& [b, ab] : later[a]) {
+      for (const auto& [c, bc] : later[b]) {
+        const auto ac = later[a].find(c);
+        if (ac == later[a].end()) continue;
+        const std::array<LinkStep, 3> loop = {towards(graph, ab, b), towards(graph, bc, c),
+                                              towards(graph, ac->second, a)};
+        const bool closes = loop_error(graph, loop) < max_loop_error;
+        for (int i = 0; i < 3; ++i) {
+          CycleSupport& entry = found[loop[i].link];
+          ++(closes ? entry.triangles : entry.open);
+          if (closes) {
+            entry.support +=
+                std::min(graph.links[loop[(i + 1) % 3].link].weight, graph.links[loop[(i + 2) % 3].link].weight);
+          }
+        }
+      }
+    }
+  }
+  return found;
+}
+
+}  // namespace igsp

@@ -1,0 +1,117 @@
+#include "network/decide.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "network/components.hpp"
+#include "network/cycles.hpp"
+#include "network/pose_graph.hpp"
+#include "network/spanning_forest.hpp"
+
+namespace igsp {
+namespace {
+
+std::vector<Edge> edges_of(const LinkGraph& graph, std::span<const std::size_t> links) {
+  std::vector<Edge> edges;
+  for (const std::size_t l : links) edges.emplace_back(graph.links[l].source, graph.links[l].target);
+  return edges;
+}
+
+std::vector<std::size_t> anchors_of(const LinkGraph& graph, std::span<const std::size_t> forest) {
+  std::vector<std::size_t> anchors;
+  for (const auto& scans : connected_components(graph.centres.size(), edges_of(graph, forest))) {
+    anchors.push_back(scans.front());
+  }
+  return anchors;
+}
+
+// RMS displacement of the source's points between the pair's own answer and the network's.
+double displacement(const NetworkLink& link, const Network& network, const ScanShape& shape) {
+  const Transformation difference = network.scans[link.target].world_from_scan.inverse() *
+                                    network.scans[link.source].world_from_scan * link.target_from_source.inverse();
+  const Vector6 step = step_about(link.target_from_source * shape.centre, difference);
+  return std::sqrt(step.tail<3>().squaredNorm() + 2.0 / 3.0 * step.head<3>().squaredNorm() * shape.size * shape.size);
+}
+
+// The frame of its first scan is a component's world, and the covariance that of a motion in the world.
+void place_scans(Network& network, const BalancedPoses& poses, std::span<const ScanShape> shapes) {
+  for (std::size_t c = 0; c < network.components.size(); ++c) {
+    const Transformation world_from_tree = poses.world_from_scan[network.components[c].front()].inverse();
+    for (const std::size_t i : network.components[c]) {
+      NetworkScan& scan = network.scans[i];
+      scan.component = c;
+      scan.world_from_scan = world_from_tree * poses.world_from_scan[i];
+      scan.world_from_scan.translation() *= network.voxel_size;
+      if (i == network.components[c].front()) scan.world_from_scan = Transformation::Identity();
+      Vector6 scale;
+      scale << Eigen::Vector3d::Ones(), Eigen::Vector3d::Constant(network.voxel_size);
+      Matrix6 turn = Matrix6::Zero();
+      turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = scan.world_from_scan.linear();
+      turn = turn * scale.asDiagonal();
+      scan.covariance = turn * poses.covariances[i] * turn.transpose();
+      scan.centre = scan.world_from_scan * shapes[i].centre;
+    }
+  }
+}
+
+void name_states(Network& network, const MeasuredGraph& measured, const BalancedPoses& poses,
+                 const std::vector<CycleSupport>& support) {
+  for (NetworkLink& link : network.links) {
+    if (link.state == LinkState::not_registered || !contradicts_free_space(link)) continue;
+    link.state = LinkState::rejected;
+    link.reason = fmt::format("{:.0f} % of the points lie where the other scanner saw through", 100 * link.violation);
+  }
+  std::vector<std::size_t> used;
+  for (std::size_t l = 0; l < measured.link_of.size(); ++l) {
+    NetworkLink& link = network.links[measured.link_of[l]];
+    link.consistent_triangles = support[l].triangles;
+    if (poses.errors[l] < max_loop_error) {
+      used.push_back(l);
+      continue;
+    }
+    link.state = LinkState::rejected;
+    link.reason = std::isfinite(poses.errors[l])
+                      ? fmt::format("the other links of the network put the pair {:.1f} sigma elsewhere",
+                                    std::sqrt(poses.errors[l]))
+                      : "joins two groups of scans, with no loop to confirm it or against other links between them";
+  }
+  const std::vector<Edge> edges = edges_of(measured.graph, used);
+  network.components = connected_components(network.scans.size(), edges);
+  const std::vector<bool> in_no_loop = bridges(network.scans.size(), edges);
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    NetworkLink& link = network.links[measured.link_of[used[k]]];
+    link.state = in_no_loop[k] ? LinkState::unconfirmed : LinkState::used;
+  }
+}
+
+void measure_residuals(Network& network, std::span<const ScanShape> shapes) {
+  double squares = 0;
+  std::size_t count = 0;
+  for (NetworkLink& link : network.links) {
+    if (link.state == LinkState::not_registered ||
+        network.scans[link.source].component != network.scans[link.target].component) {
+      continue;
+    }
+    link.residual = displacement(link, network, shapes[link.source]);
+    if (link.state == LinkState::rejected) continue;
+    squares += link.residual * link.residual;
+    ++count;
+  }
+  network.bundle_error = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
+}
+
+}  // namespace
+
+void decide(Network& network, std::span<const ScanShape> shapes, const NetworkOptions& options) {
+  const MeasuredGraph measured =
+      measured_graph(network.links, shapes, network.voxel_size, options.min_unconfirmed_confidence);
+  const std::vector<CycleSupport> support = cycle_support(measured.graph);
+  const std::vector<std::size_t> forest = spanning_forest(measured.graph, support);
+  const BalancedPoses poses = balance_poses(measured.graph, forest, anchors_of(measured.graph, forest));
+  name_states(network, measured, poses, support);
+  place_scans(network, poses, shapes);
+  measure_residuals(network, shapes);
+}
+
+}  // namespace igsp

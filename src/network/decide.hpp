@@ -1,0 +1,12 @@
+#pragma once
+
+#include "igsp/network.hpp"
+#include "network/measured_graph.hpp"
+
+namespace igsp {
+
+/// From pairs to one answer: `network` holds scans and links as registered; this decides which links stand and where
+/// every scan lies, and fills in the rest. `shapes` by scan.
+void decide(Network& network, std::span<const ScanShape> shapes, const NetworkOptions& options);
+
+}  // namespace igsp

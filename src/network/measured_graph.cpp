@@ -1,0 +1,82 @@
+#include "network/measured_graph.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "registration/precision.hpp"
+
+namespace igsp {
+namespace {
+
+// Beyond what residuals tell, a fine registration errs by the sampling of the surfaces and what moved between the
+// scans: this much at one sigma.
+constexpr double pull_floor = 0.1;  // [voxels]
+
+// What is right within about two voxels is right; loops are judged by it.
+constexpr double judging_floor = 0.5;  // [voxels]
+
+// Right poses have at most 0.05 (docs/network.md); beyond the first a pair needs others to confirm it, beyond the
+// second it is out.
+constexpr double doubtful_violation = 0.06;
+constexpr double forbidden_violation = 0.12;
+
+constexpr double least_weight = 0.1, greatest_weight = 5;  // log odds
+
+Matrix6 floor_of(double sigma, double size) {
+  Vector6 squares;
+  squares << Eigen::Vector3d::Constant(size > 0 ? sigma * sigma / (size * size) : 1),
+      Eigen::Vector3d::Constant(sigma * sigma);
+  return squares.asDiagonal();
+}
+
+// The same covariance with lengths in voxels.
+Matrix6 in_voxels(const Matrix6& covariance, double voxel_size) {
+  Vector6 scale;
+  scale << Eigen::Vector3d::Ones(), Eigen::Vector3d::Constant(1 / voxel_size);
+  return scale.asDiagonal() * covariance * scale.asDiagonal();
+}
+
+GraphLink graph_link(const NetworkLink& link, const ScanShape& source, double voxel_size, double min_confidence) {
+  GraphLink result;
+  result.source = link.source;
+  result.target = link.target;
+  result.target_from_source = link.target_from_source;
+  result.target_from_source.translation() /= voxel_size;
+  result.centre = link.precision.centre / voxel_size;
+  const Matrix6 covariance = in_voxels(link.precision.covariance, voxel_size);
+  result.information = (covariance + floor_of(pull_floor, source.size / voxel_size)).inverse();
+  result.tolerance = covariance + floor_of(judging_floor, source.size / voxel_size);
+  const double odds = link.confidence / std::max(1e-12, 1 - link.confidence);
+  result.weight = std::clamp(std::log(odds), least_weight, greatest_weight);
+  result.may_stand_alone = link.confidence >= min_confidence && link.violation <= doubtful_violation;
+  return result;
+}
+
+}  // namespace
+
+ScanShape shape_of(const Features& features) {
+  ScanShape shape;
+  for (const Eigen::Vector3d& point : features.points) shape.centre += point / features.points.size();
+  shape.centre += features.origin;
+  shape.size = size_of(features.points);
+  return shape;
+}
+
+bool contradicts_free_space(const NetworkLink& link) {
+  return link.violation > forbidden_violation;
+}
+
+MeasuredGraph measured_graph(std::span<const NetworkLink> links, std::span<const ScanShape> shapes, double voxel_size,
+                             double min_unconfirmed_confidence) {
+  MeasuredGraph measured;
+  for (const ScanShape& shape : shapes) measured.graph.centres.push_back(shape.centre / voxel_size);
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (links[i].state == LinkState::not_registered || contradicts_free_space(links[i])) continue;
+    measured.graph.links.push_back(
+        graph_link(links[i], shapes[links[i].source], voxel_size, min_unconfirmed_confidence));
+    measured.link_of.push_back(i);
+  }
+  return measured;
+}
+
+}  // namespace igsp

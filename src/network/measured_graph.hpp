@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "igsp/network.hpp"
+#include "network/link_graph.hpp"
+
+namespace igsp {
+
+/// How far the points of a scan reach.
+struct ScanShape {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< centroid, in the scan's frame
+  double size = 0;                                   ///< root mean square distance from it
+};
+ScanShape shape_of(const Features& features);
+
+/// The registered pairs among `links` as a graph in voxels, and which link each of its links is. A pair that the free
+/// space speaks against clearly is left out.
+struct MeasuredGraph {
+  LinkGraph graph;
+  std::vector<std::size_t> link_of;  ///< per link of the graph
+};
+MeasuredGraph measured_graph(std::span<const NetworkLink> links, std::span<const ScanShape> shapes, double voxel_size,
+                             double min_unconfirmed_confidence);
+
+/// True where the free space forbids a pair, whatever else speaks for it.
+bool contradicts_free_space(const NetworkLink& link);
+
+}  // namespace igsp

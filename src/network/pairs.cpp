@@ -1,0 +1,54 @@
+#include "network/pairs.hpp"
+
+#include "core/parallel.hpp"
+#include "igsp/align.hpp"
+
+namespace igsp {
+namespace {
+
+constexpr std::size_t slice = 8;  // pairs between two reports
+
+NetworkLink link_of(const ScanPair& pair, const Result& result) {
+  NetworkLink link;
+  link.source = pair.first;
+  link.target = pair.second;
+  link.state = result.registered ? LinkState::unconfirmed : LinkState::not_registered;
+  link.reason = result.reason;
+  link.target_from_source = result.target_from_source;
+  link.confidence = result.confidence;
+  link.overlap = result.overlap();
+  link.rmse = result.rmse;
+  link.violation = result.evidence.free_space.violation();
+  link.precision = result.precision;
+  return link;
+}
+
+}  // namespace
+
+std::vector<ScanPair> all_pairs(const std::vector<NetworkScan>& scans) {
+  std::vector<ScanPair> pairs;
+  for (std::size_t source = 1; source < scans.size(); ++source) {
+    for (std::size_t target = 0; target < source; ++target) {
+      if (scans[source].problem.empty() && scans[target].problem.empty()) pairs.emplace_back(source, target);
+    }
+  }
+  return pairs;
+}
+
+std::vector<NetworkLink> register_pairs(std::span<const ScanPair> pairs, std::span<const Features* const> features,
+                                        const Options& options, const std::function<void(double)>& report) {
+  Options single = options;
+  single.threads = 1;
+  std::vector<NetworkLink> links(pairs.size());
+  parallel_slices(
+      pairs.size(), options.threads, 1, slice,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          links[i] = link_of(pairs[i], align(*features[pairs[i].first], *features[pairs[i].second], single));
+        }
+      },
+      report);
+  return links;
+}
+
+}  // namespace igsp

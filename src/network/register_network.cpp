@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "igsp/errors.hpp"
+#include "igsp/network.hpp"
+#include "network/common_scale.hpp"
+#include "network/decide.hpp"
+#include "network/pairs.hpp"
+
+namespace igsp {
+namespace {
+
+void check(const NetworkOptions& options) {
+  validate(options.pair);
+  const double confidence = options.min_unconfirmed_confidence;
+  if (confidence >= 0.5 && confidence <= 1) return;
+  throw InvalidArgument(fmt::format("min_unconfirmed_confidence is {}; it must be in [0.5, 1]", confidence));
+}
+
+void report(const ProgressCallback& progress, std::string_view stage, double fraction) {
+  if (progress && !progress({stage, fraction})) throw Cancelled();
+}
+
+// Features of all scans; what a source throws is that scan's problem.
+struct Gathered {
+  std::vector<Features> features;
+  std::vector<NetworkScan> scans;
+  double voxel_size = 0;
+};
+
+void take(Gathered& gathered, Features features, std::size_t i) {
+  if (features.points.empty()) throw InvalidArgument("no points");
+  if (gathered.voxel_size == 0) gathered.voxel_size = features.voxel_size;
+  if (features.voxel_size != gathered.voxel_size) {
+    throw InvalidArgument(fmt::format("features with voxel_size {} among those with {}; all must be the same",
+                                      features.voxel_size, gathered.voxel_size));
+  }
+  gathered.scans[i].points = features.cloud_points;
+  gathered.features[i] = std::move(features);
+}
+
+Gathered gather(std::size_t count, const FeatureSource& source, const ProgressCallback& progress) {
+  Gathered gathered{std::vector<Features>(count), std::vector<NetworkScan>(count)};
+  for (std::size_t i = 0; i < count; ++i) {
+    report(progress, "features", static_cast<double>(i) / static_cast<double>(count));
+    try {
+      take(gathered, source(i), i);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const std::exception& error) {
+      gathered.scans[i].problem = error.what();
+    }
+  }
+  report(progress, "features", 1);
+  return gathered;
+}
+
+}  // namespace
+
+std::string_view to_string(LinkState state) {
+  switch (state) {
+    case LinkState::used:
+      return "used";
+    case LinkState::unconfirmed:
+      return "unconfirmed";
+    case LinkState::rejected:
+      return "rejected";
+    case LinkState::not_registered:
+      return "not_registered";
+  }
+  return "unknown";
+}
+
+Network register_network(std::size_t scans, const FeatureSource& features, const NetworkOptions& options,
+                         const ProgressCallback& progress) {
+  check(options);
+  Gathered gathered = gather(scans, features, progress);
+  Network network;
+  network.scans = std::move(gathered.scans);
+  network.voxel_size = gathered.voxel_size;
+  std::vector<const Features*> views;
+  std::vector<ScanShape> shapes;
+  for (const Features& one : gathered.features) {
+    views.push_back(&one);
+    shapes.push_back(shape_of(one));
+  }
+  network.links = register_pairs(all_pairs(network.scans), views, options.pair,
+                                 [&](double done) { report(progress, "pairs", done); });
+  report(progress, "pairs", 1);
+  decide(network, shapes, options);
+  return network;
+}
+
+Network register_network(std::span<const Features> scans, const NetworkOptions& options,
+                         const ProgressCallback& progress) {
+  for (const Features& one : scans) {
+    if (one.voxel_size == scans[0].voxel_size) continue;
+    throw InvalidArgument(
+        fmt::format("the features of two scans were extracted with voxel_size {} and {}; all must be "
+                    "the same",
+                    scans[0].voxel_size, one.voxel_size));
+  }
+  return register_network(
+      scans.size(), [&](std::size_t i) { return scans[i]; }, options, progress);
+}
+
+Network register_network(std::span<const Scan> scans, const NetworkOptions& options, const ProgressCallback& progress) {
+  check(options);
+  NetworkOptions scaled = options;
+  if (options.pair.scale.voxel_size == 0) {
+    std::vector<double> own;
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+      report(progress, "scale", static_cast<double>(i) / static_cast<double>(scans.size()));
+      try {
+        own.push_back(own_voxel_size(scans[i], options.pair.scale));
+      } catch (const InvalidArgument&) {
+        // Said again, as the scan's problem, where its features are extracted.
+      }
+    }
+    scaled.pair.scale.voxel_size = common_voxel_size(std::move(own));
+  }
+  const auto features = [&](std::size_t i) { return extract_features(scans[i], scaled.pair); };
+  return register_network(scans.size(), features, scaled, progress);
+}
+
+}  // namespace igsp

@@ -1,0 +1,149 @@
+#include "network/spanning_forest.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <optional>
+
+namespace igsp {
+namespace {
+
+// Two links that contradict each other are alike in weight where neither is this much heavier.
+constexpr double outweighs = 1.5;
+
+constexpr std::size_t max_votes = 20;  // between two components, the heaviest links
+
+struct Proposal {
+  std::size_t link;
+  bool confirmed;  // by a loop
+  double votes;
+};
+
+class Growth {
+ public:
+  Growth(const LinkGraph& graph, const std::vector<CycleSupport>& support)
+      : graph_(graph), support_(support), component_(graph.centres.size()), forest_links_(graph.centres.size()) {
+    std::iota(component_.begin(), component_.end(), 0);
+  }
+
+  std::vector<std::size_t> run() {
+    while (const std::optional<Proposal> best = best_proposal()) join(best->link);
+    return forest_;
+  }
+
+ private:
+  double vote(std::size_t link) const { return graph_.links[link].weight + support_[link].support; }
+
+  std::optional<Proposal> best_proposal() {
+    std::map<Edge, std::vector<std::size_t>> between;
+    for (std::size_t l = 0; l < graph_.links.size(); ++l) {
+      const auto [a, b] = std::minmax(component_[graph_.links[l].source], component_[graph_.links[l].target]);
+      if (a != b) between[{a, b}].push_back(l);
+    }
+    std::optional<Proposal> best;
+    for (auto& [components, links] : between) {
+      const std::optional<Proposal> proposal = elect(links, components.first);
+      if (!proposal) continue;
+      const auto rank = [](const Proposal& p) { return std::pair(p.confirmed, p.votes); };
+      if (!best || rank(*proposal) > rank(*best)) best = proposal;
+    }
+    return best;
+  }
+
+  // What the links between two components agree on.
+  std::optional<Proposal> elect(std::vector<std::size_t>& links, std::size_t first_component) {
+    std::stable_sort(links.begin(), links.end(), [&](auto a, auto b) { return vote(a) > vote(b); });
+    if (links.size() > max_votes) links.resize(max_votes);
+    const std::size_t n = links.size();
+    std::vector<std::vector<bool>> agree(n, std::vector<bool>(n, true));
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < i; ++j) agree[i][j] = agree[j][i] = agrees(links[i], links[j], first_component);
+    }
+    std::vector<double> votes(n, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) votes[i] += agree[i][j] ? vote(links[j]) : 0;
+    }
+    const std::size_t winner = std::max_element(votes.begin(), votes.end()) - votes.begin();
+    double rival = 0;
+    std::size_t group = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (agree[winner][i]) ++group;
+      if (!agree[winner][i]) rival = std::max(rival, votes[i]);
+    }
+    const bool confirmed = group > 1 || support_[links[winner]].triangles > 0;
+    if (votes[winner] < outweighs * rival) return {};
+    if (!confirmed && !graph_.links[links[winner]].may_stand_alone) return {};
+    return Proposal{links[winner], confirmed, votes[winner]};
+  }
+
+  bool agrees(std::size_t a, std::size_t b, std::size_t first_component) const {
+    const auto end_in = [&](std::size_t link, bool first) {
+      const GraphLink& one = graph_.links[link];
+      return (component_[one.source] == first_component) == first ? one.source : one.target;
+    };
+    std::vector<LinkStep> loop = {{a, component_[graph_.links[a].source] == first_component}};
+    const auto append = [&](const std::vector<LinkStep>& path) { loop.insert(loop.end(), path.begin(), path.end()); };
+    append(forest_path(graph_, forest_links_, end_in(a, false), end_in(b, false)));
+    loop.push_back({b, component_[graph_.links[b].target] == first_component});
+    append(forest_path(graph_, forest_links_, end_in(b, true), end_in(a, true)));
+    return loop_error(graph_, loop) < max_loop_error;
+  }
+
+  void join(std::size_t link) {
+    const GraphLink& one = graph_.links[link];
+    forest_.push_back(link);
+    forest_links_[one.source].push_back(link);
+    forest_links_[one.target].push_back(link);
+    const auto [kept, joined] = std::minmax(component_[one.source], component_[one.target]);
+    const std::size_t from = joined, to = kept;
+    std::replace(component_.begin(), component_.end(), from, to);
+  }
+
+  using Edge = std::pair<std::size_t, std::size_t>;
+  const LinkGraph& graph_;
+  const std::vector<CycleSupport>& support_;
+  std::vector<std::size_t> component_;
+  std::vector<std::vector<std::size_t>> forest_links_;
+  std::vector<std::size_t> forest_;
+};
+
+}  // namespace
+
+std::vector<std::vector<std::size_t>> links_by_scan(const LinkGraph& graph, std::span<const std::size_t> links) {
+  std::vector<std::vector<std::size_t>> by_scan(graph.centres.size());
+  for (const std::size_t link : links) {
+    by_scan[graph.links[link].source].push_back(link);
+    by_scan[graph.links[link].target].push_back(link);
+  }
+  return by_scan;
+}
+
+std::vector<std::size_t> spanning_forest(const LinkGraph& graph, const std::vector<CycleSupport>& support) {
+  return Growth(graph, support).run();
+}
+
+std::vector<LinkStep> forest_path(const LinkGraph& graph, const std::vector<std::vector<std::size_t>>& forest_links,
+                                  std::size_t from, std::size_t to) {
+  // From the end, so that every scan met knows the step that leads on.
+  std::map<std::size_t, LinkStep> onward;
+  std::vector<std::size_t> reached = {to};
+  for (std::size_t i = 0; i < reached.size() && !onward.contains(from) && from != to; ++i) {
+    const std::size_t here = reached[i];
+    for (const std::size_t link : forest_links[here]) {
+      const bool forward = graph.links[link].target == here;
+      const std::size_t before = forward ? graph.links[link].source : graph.links[link].target;
+      if (before == to || !onward.try_emplace(before, LinkStep{link, forward}).second) continue;
+      reached.push_back(before);
+    }
+  }
+  std::vector<LinkStep> path;
+  if (!onward.contains(from)) return path;
+  for (std::size_t here = from; here != to;) {
+    const LinkStep step = onward.at(here);
+    path.push_back(step);
+    here = step.forward ? graph.links[step.link].target : graph.links[step.link].source;
+  }
+  return path;
+}
+
+}  // namespace igsp

@@ -1,0 +1,131 @@
+"""igsp network as a user meets it. usage: network_command_test.py IGSP [unittest arguments]"""
+import csv
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+IGSP = sys.argv.pop(1)
+STATIONS = 4
+
+
+def setUpModule():
+    folder = tempfile.TemporaryDirectory()
+    unittest.addModuleCleanup(folder.cleanup)
+    NetworkCommand.site = Path(folder.name)
+    subprocess.run([IGSP, "simulate", "park", "--out", folder.name, "--points", "30000", "--stations", str(STATIONS),
+                    "--station-distance", "8", "--seed", "3"], check=True, stdout=subprocess.DEVNULL)
+
+
+def pose_of(row):
+    w, x, y, z = (float(row[k]) for k in ("qw", "qx", "qy", "qz"))
+    pose = np.eye(4)
+    pose[:3, :3] = [[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                    [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                    [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]
+    pose[:3, 3] = [float(row[k]) for k in ("tx", "ty", "tz")]
+    return pose
+
+
+class NetworkCommand(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.scans = [self.site / f"station_{i}.ply" for i in range(STATIONS)]
+
+    def network(self, *arguments, code=0):
+        run = subprocess.run([IGSP, "network", *map(str, arguments), "--target-points", "3000"], capture_output=True,
+                             text=True, cwd=self.folder)
+        self.assertEqual(run.returncode, code, f"{arguments}\n{run.stdout}\n{run.stderr}")
+        return run
+
+    def rows(self, name):
+        with open(self.folder / "survey" / name, newline="") as file:
+            return list(csv.DictReader(file))
+
+    def check_poses(self, rows):
+        for i, row in enumerate(rows[1:], 1):
+            truth = np.loadtxt(self.site / f"station_{i}_to_0.txt")
+            difference = np.linalg.inv(truth) @ np.linalg.inv(pose_of(rows[0])) @ pose_of(row)
+            self.assertLess(np.linalg.norm(difference - np.eye(4)), 0.1, row)
+
+    def test_writes_poses_links_and_everything(self):
+        run = self.network(*self.scans, "-o", "survey")
+        self.assertTrue(run.stdout.startswith("registered 4 of 4 scans: 4 in one frame\n"), run.stdout)
+        self.assertRegex(run.stdout, r"[3-6] of 6 pairs registered, 0 rejected by the network, \d links are unconfirmed "
+                                     r"\(in no loop\); bundle error 0\.\d+")
+        poses = self.rows("poses.csv")
+        self.assertEqual([row["scan"] for row in poses], [str(path) for path in self.scans])
+        self.assertEqual({row["component"] for row in poses}, {"0"})
+        self.assertTrue((pose_of(poses[0]) == np.eye(4)).all())
+        self.check_poses(poses)
+        links = self.rows("links.csv")
+        self.assertEqual(len(links), 6)
+        everything = json.loads((self.folder / "survey/network.json").read_text())
+        self.assertEqual([link["state"] for link in everything["links"]], [link["state"] for link in links])
+        covariance = np.array(everything["scans"][2]["covariance"])
+        self.assertTrue((np.linalg.eigvalsh(covariance) > 0).all())
+        self.assertTrue((np.array(everything["scans"][0]["covariance"]) == 0).all())
+
+    def test_g2o_and_tum_say_the_same(self):
+        self.network(*self.scans, "-o", "survey")
+        lines = [line.split() for line in (self.folder / "survey/network.g2o").read_text().splitlines()]
+        vertices = [line[2:] for line in lines if line[0] == "VERTEX_SE3:QUAT"]
+        tum = [line.split()[1:] for line in (self.folder / "survey/poses.tum").read_text().splitlines()]
+        self.assertEqual(vertices, tum)
+        edges = [line for line in lines if line[0] == "EDGE_SE3:QUAT"]
+        used = [link for link in self.rows("links.csv") if link["state"] in ("used", "unconfirmed")]
+        self.assertEqual(len(edges), len(used))
+        for edge, link in zip(edges, used):
+            self.assertEqual(len(edge), 3 + 7 + 21)
+            self.assertTrue(link["target"].endswith(f"station_{edge[1]}.ply"))
+            self.assertEqual(edge[3:6], [link["tx"], link["ty"], link["tz"]])
+            information, upper = np.zeros((6, 6)), np.array(edge[10:], float)
+            information[np.triu_indices(6)] = upper
+            information = information + np.triu(information, 1).T
+            self.assertGreater(np.linalg.eigvalsh(information)[0], 0)
+
+    def test_unreadable_scan_in_the_middle_does_not_stop_the_rest(self):
+        broken = self.folder / "broken.ply"
+        broken.write_bytes(b"ply\nformat ascii 1.0\nelement vertex 5\nend_header\n")
+        empty = self.folder / "empty.xyz"
+        empty.write_bytes(b"")
+        run = self.network(*self.scans[:2], broken, empty, *self.scans[2:], "-o", "survey", code=3)
+        self.assertIn("registered 4 of 6 scans: 4 in one frame; 2 alone (broken: ", run.stdout)
+        poses = self.rows("poses.csv")
+        self.assertEqual([row["component"] for row in poses], ["0", "0", "1", "2", "0", "0"])
+        self.check_poses(poses[:2] + poses[4:])
+
+    def test_folder_and_viewpoints(self):
+        (self.folder / "viewpoints.csv").write_text("scan,x,y,z\nstation_1.ply,0,0,0\nstation_0,0,0,0\n")
+        self.network(self.site, "-o", "survey", "--viewpoints", "viewpoints.csv")
+        poses = self.rows("poses.csv")
+        self.assertEqual([row["scan"] for row in poses], [str(path) for path in self.scans])
+        self.check_poses(poses)
+
+    def refuses(self, *arguments, code, saying):
+        run = self.network(*arguments, code=code)
+        self.assertIn(saying, run.stderr)
+        self.assertEqual(run.stderr.count("\n"), 1, run.stderr)
+
+    def test_refusals_name_the_cause(self):
+        self.refuses(self.scans[0], "-o", "survey", code=2, saying="a network needs at least two scans")
+        self.refuses(self.scans[0], self.scans[0], "-o", "survey", code=2, saying="is given twice")
+        (self.folder / "nothing").mkdir()
+        self.refuses("nothing", "-o", "survey", code=3, saying="a folder without any point cloud")
+        (self.folder / "v.csv").write_text("scan,x,y,z\nother,0,0,0\n")
+        self.refuses(*self.scans, "-o", "survey", "--viewpoints", "v.csv", code=3,
+                     saying='v.csv: line 2, column 1 (scan): "other" is none of the scans given')
+        (self.folder / "v.csv").write_text("scan,x,y\nother,0,0\n")
+        self.refuses(*self.scans, "-o", "survey", "--viewpoints", "v.csv", code=3, saying="has no column z")
+        self.refuses(*self.scans, "-o", "survey", "--min-unconfirmed-confidence", "2", code=2,
+                     saying="min_unconfirmed_confidence is 2")
+
+
+if __name__ == "__main__":
+    unittest.main()

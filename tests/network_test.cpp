@@ -1,0 +1,130 @@
+// The network as its users meet it: scans in, one frame out, and what does not belong stays out of it.
+#include "igsp/network.hpp"
+
+#include <gtest/gtest.h>
+
+#include "igsp/errors.hpp"
+#include "igsp/evaluation.hpp"
+#include "igsp/simulation.hpp"
+
+namespace igsp {
+namespace {
+
+std::vector<SimulatedScan> park(std::uint64_t seed, int stations) {
+  return simulate("park", {.stations = stations, .points = 30000, .station_distance = 8, .seed = seed});
+}
+
+NetworkOptions fast_options() {
+  NetworkOptions options;
+  options.pair.scale.target_points = 3000;
+  return options;
+}
+
+std::vector<Scan> views(const std::vector<SimulatedScan>& scans) {
+  return {scans.begin(), scans.end()};
+}
+
+// Of scans whose true poses share a world: rotation [rad] and displacement of the centre, seen from the component's
+// first scan.
+void expect_right(const Network& network, const std::vector<std::size_t>& component,
+                  const std::vector<SimulatedScan>& scans, std::size_t first_of_site) {
+  const auto truth = [&](std::size_t i) { return scans[i - first_of_site].world_from_scanner; };
+  for (const std::size_t i : component) {
+    const Transformation expected = truth(component.front()).inverse() * truth(i);
+    const PoseError error = pose_error(network.scans[i].world_from_scan, expected, Eigen::Vector3d::Zero());
+    EXPECT_LT(error.rotation_rad, 0.01) << i;
+    EXPECT_LT(error.translation, 0.1) << i;
+  }
+}
+
+TEST(Network, TwoSitesInOneFolderAreTwoComponents) {
+  const auto site = park(3, 4), other = park(11, 3);
+  std::vector<Scan> scans = views(site);
+  for (const SimulatedScan& scan : other) scans.push_back(scan);
+  const Network network = register_network(std::span<const Scan>(scans), fast_options());
+  ASSERT_EQ(network.components.size(), 2u);
+  EXPECT_EQ(network.components[0], (std::vector<std::size_t>{0, 1, 2, 3}));
+  EXPECT_EQ(network.components[1], (std::vector<std::size_t>{4, 5, 6}));
+  expect_right(network, network.components[0], site, 0);
+  expect_right(network, network.components[1], other, 4);
+  EXPECT_GT(network.bundle_error, 0);
+  EXPECT_LT(network.bundle_error, 0.05);
+}
+
+TEST(Network, SameScanTwiceOneOfTenPointsAndAnEmptyOneDoNotDisturbTheRest) {
+  const auto site = park(3, 3);
+  const Points few(site[0].points.begin(), site[0].points.begin() + 10), none;
+  const std::vector<Scan> scans = {site[0], few, site[1], none, site[0], site[2]};
+  const Network network = register_network(std::span<const Scan>(scans), fast_options());
+  EXPECT_EQ(network.components[0], (std::vector<std::size_t>{0, 2, 4, 5}));
+  EXPECT_EQ(network.components.size(), 3u);
+  EXPECT_EQ(network.scans[3].problem, "cloud has no points; at least one is needed");
+  EXPECT_EQ(network.scans[1].problem, "");
+  const PoseError twin = pose_error(network.scans[4].world_from_scan, Transformation::Identity(), {0, 0, 0});
+  EXPECT_LT(twin.translation, 0.05);
+  EXPECT_LT(twin.rotation_rad, 0.005);
+}
+
+TEST(Network, TwoScansAreOneUnconfirmedLink) {
+  const auto site = park(3, 2);
+  const std::vector<Scan> scans = views(site);
+  const Network network = register_network(std::span<const Scan>(scans), fast_options());
+  ASSERT_EQ(network.links.size(), 1u);
+  EXPECT_EQ(network.links[0].state, LinkState::unconfirmed);
+  EXPECT_EQ(network.components.size(), 1u);
+  EXPECT_LT(network.links[0].residual, 1e-9);
+  const auto& covariance = network.scans[1].covariance;
+  EXPECT_GT(covariance.diagonal().minCoeff(), 0);
+  EXPECT_EQ(network.scans[0].covariance.norm(), 0);
+}
+
+TEST(Network, SameBitsForAnyNumberOfThreads) {
+  const auto site = park(5, 4);
+  const std::vector<Scan> scans = views(site);
+  NetworkOptions options = fast_options();
+  options.pair.threads = 1;
+  const Network one = register_network(std::span<const Scan>(scans), options);
+  options.pair.threads = 3;
+  const Network three = register_network(std::span<const Scan>(scans), options);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    EXPECT_EQ(one.scans[i].world_from_scan.matrix(), three.scans[i].world_from_scan.matrix());
+    EXPECT_EQ(one.scans[i].covariance, three.scans[i].covariance);
+  }
+}
+
+TEST(Network, SourceThatThrowsIsThatScansProblem) {
+  const auto site = park(3, 3);
+  const NetworkOptions options = fast_options();
+  const auto features = [&](std::size_t i) {
+    if (i == 1) throw FileError("station_1.ply: cannot be opened");
+    Options scaled = options.pair;
+    scaled.scale.voxel_size = 0.5;
+    return extract_features(site[i < 1 ? i : i - 1], scaled);
+  };
+  const Network network = register_network(3, features, options);
+  EXPECT_EQ(network.scans[1].problem, "station_1.ply: cannot be opened");
+  EXPECT_EQ(network.components[0], (std::vector<std::size_t>{0, 2}));
+}
+
+TEST(Network, RefusesWhatItCannotUse) {
+  NetworkOptions options;
+  options.min_unconfirmed_confidence = 0.3;
+  EXPECT_THROW(register_network(std::span<const Scan>(), options), InvalidArgument);
+  std::vector<Features> features(2);
+  features[0].voxel_size = 1;
+  features[1].voxel_size = 2;
+  EXPECT_THROW(register_network(std::span<const Features>(features)), InvalidArgument);
+  const Network nothing = register_network(std::span<const Scan>());
+  EXPECT_TRUE(nothing.scans.empty());
+  EXPECT_TRUE(nothing.components.empty());
+}
+
+TEST(Network, StopsWhenAsked) {
+  const auto site = park(3, 2);
+  const std::vector<Scan> scans = views(site);
+  const auto stop = [](const Progress& progress) { return progress.stage != "pairs"; };
+  EXPECT_THROW(register_network(std::span<const Scan>(scans), fast_options(), stop), Cancelled);
+}
+
+}  // namespace
+}  // namespace igsp
