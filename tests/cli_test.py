@@ -72,6 +72,27 @@ class CommandTest(unittest.TestCase):
         return self.folder / name
 
 
+    def under_terminal(self, arguments, wait_for=None, then=None):
+        """Exit code and what was sent to the terminal that stands in for standard error. When `wait_for` was sent,
+        the process gets the signal `then`."""
+        reader, writer = pty.openpty()
+        process = subprocess.Popen([IGSP, *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=writer,
+                                   cwd=self.folder)
+        os.close(writer)
+        sent = b""
+        while True:
+            try:
+                piece = os.read(reader, 4096)
+            except OSError:  # the other end is closed
+                break
+            sent += piece
+            if wait_for and wait_for in sent:
+                process.send_signal(then)
+                wait_for = None
+        os.close(reader)
+        return process.wait(), sent.decode()
+
+
 class Align(CommandTest):
     def test_registers_and_writes_what_was_asked_for(self):
         run = self.igsp("align", self.source, self.target, "-o", "a.ply", "--transform", "T.txt", "--report", "r.json")
@@ -373,26 +394,6 @@ class BadInput(CommandTest):
 
 
 class Terminal(CommandTest):
-    def under_terminal(self, arguments, wait_for=None, then=None):
-        """Exit code and what was sent to the terminal that stands in for standard error. When `wait_for` was sent,
-        the process gets the signal `then`."""
-        reader, writer = pty.openpty()
-        process = subprocess.Popen([IGSP, *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=writer,
-                                   cwd=self.folder)
-        os.close(writer)
-        sent = b""
-        while True:
-            try:
-                piece = os.read(reader, 4096)
-            except OSError:  # the other end is closed
-                break
-            sent += piece
-            if wait_for and wait_for in sent:
-                process.send_signal(then)
-                wait_for = None
-        os.close(reader)
-        return process.wait(), sent.decode()
-
     def test_a_bar_per_stage(self):
         code, sent = self.under_terminal(["align", self.source, self.target])
         self.assertEqual(code, 0)
@@ -409,7 +410,7 @@ class Terminal(CommandTest):
                     "--descriptor-radius", "60", "-o", "a.ply", "--transform", "T.txt", "--report", "r.json"]
         for stage, number in [(b"read source", signal.SIGTERM), (b"keypoints", signal.SIGINT)]:
             code, sent = self.under_terminal(long_run, wait_for=stage, then=number)
-            self.assertEqual(code, 130, sent)
+            self.assertEqual(code, 128 + number, sent)
             self.assertIn("igsp: interrupted", sent)
             self.assertEqual(os.listdir(self.folder), [])
 

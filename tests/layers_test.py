@@ -22,7 +22,7 @@ ALLOWED = {
     "diagnosis": REGISTRATION | {"diagnosis"},
     "network": REGISTRATION | {"network"},
     "io": SPATIAL | {"io"},
-    "config": SPATIAL | {"config"},
+    "config": SPATIAL | {"io", "config"},
     "archive": SPATIAL | {"io", "config", "archive"},
     "simulation": SPATIAL | {"simulation"},
 }

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "config/nearest.hpp"
@@ -16,6 +19,7 @@
 #include "shell/exit_codes.hpp"
 #include "shell/help_text.hpp"
 #include "shell/interrupt.hpp"
+#include "shell/standard_streams.hpp"
 
 namespace igsp::cli {
 namespace {
@@ -75,19 +79,35 @@ int report_error(std::string_view message, int exit_code) {
   return exit_code;
 }
 
+// The standard library has an error code for it, oneTBB only a text.
+bool is_lack_of_threads(const std::exception& error) {
+  const auto* system = dynamic_cast<const std::system_error*>(&error);
+  return (system && system->code() == std::errc::resource_unavailable_try_again) ||
+         std::string_view(error.what()).starts_with("pthread_create");
+}
+
 int run_guarded(const Command& command) {
   try {
-    return command();
+    const int exit_code = command();
+    check_standard_output();
+    stop_if_interrupted();  // however late it came
+    return exit_code;
   } catch (const Cancelled&) {
-    return report_error("interrupted", exit_interrupted);
+    return report_error("interrupted", interrupt_exit_code());
   } catch (const InvalidArgument& error) {
     return report_error(error.what(), exit_usage);
   } catch (const FileError& error) {
-    if (interrupted()) return report_error("interrupted", exit_interrupted);
+    if (interrupted()) return report_error("interrupted", interrupt_exit_code());
     return report_error(error.what(), exit_input_output);
   } catch (const std::bad_alloc&) {
-    return report_error("not enough memory for these clouds; a smaller --max-points streams them", exit_input_output);
+    return report_error("not enough memory", exit_input_output);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return report_error(fmt::format("{}: {}", error.path1().string(), error.code().message()), exit_input_output);
   } catch (const std::exception& error) {
+    if (is_lack_of_threads(error)) {
+      return report_error("no further thread can be started here; --threads 1 (and --jobs 1) needs none",
+                          exit_input_output);
+    }
     return report_error(fmt::format("internal error: {}", error.what()), exit_internal);
   }
 }
@@ -99,7 +119,7 @@ int parse(CLI::App& app, int argc, char** argv) {
   } catch (const InvalidArgument& error) {
     return report_error(error.what(), exit_usage);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) return run_guarded([&] { return app.exit(error); });  // --help, --version
     return report_error(error.what(), exit_usage);
   }
   return 0;
@@ -108,6 +128,8 @@ int parse(CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int run(int argc, char** argv, ForeignFormats formats) {
+  open_closed_streams();
+  void (*const on_interrupt)() = formats.on_interrupt;
   use_foreign_formats(std::move(formats));
   CLI::App app("igsp puts one point cloud onto another, without an initial guess", "igsp");
   app.set_version_flag("--version", fmt::format("igsp {}", version));
@@ -130,7 +152,7 @@ int run(int argc, char** argv, ForeignFormats formats) {
   }
   const int parsed = parse(app, argc, argv);
   if (parsed != 0 || !command) return parsed;
-  catch_interrupts();
+  catch_interrupts(on_interrupt);
   return run_guarded(command);
 }
 

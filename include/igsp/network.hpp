@@ -20,7 +20,7 @@ struct NetworkOptions {
   Options pair;  ///< of the features and of every pair; its voxel size, if set, is that of all scans
 
   /// A link in no loop joins scans only with at least this confidence, [0.5, 1].
-  double min_unconfirmed_confidence = 0.8;
+  double min_unconfirmed_confidence = 0.95;
 };
 
 /// What became of a pair of scans.

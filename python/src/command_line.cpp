@@ -91,16 +91,21 @@ cli::ForeignFormats foreign_formats(nb::handle formats) {
       .write_moved =
           [formats](const fs::path& source, const fs::path& output, const Transformation& motion) {
             in_python([&] { formats.attr("write_aligned")(source.string(), output.string(), array_of(motion)); });
-          }};
+          },
+      .on_interrupt = PyErr_SetInterrupt};
 }
 
 int run(std::vector<std::string> arguments, nb::handle formats) {
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
-  nb::gil_scoped_release unlocked;
-  const int exit_code = cli::run(static_cast<int>(arguments.size()), pointers.data(), foreign_formats(formats));
-  cli::use_foreign_formats({});
+  int exit_code;
+  {
+    nb::gil_scoped_release unlocked;
+    exit_code = cli::run(static_cast<int>(arguments.size()), pointers.data(), foreign_formats(formats));
+    cli::use_foreign_formats({});
+  }
+  if (PyErr_CheckSignals() != 0) PyErr_Clear();  // an interrupt that no Python code met: the exit code tells it
   return exit_code;
 }
 

@@ -4,16 +4,12 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <limits>
-#include <sstream>
 #include <vector>
 
 #include "config/nearest.hpp"
 #include "config/option_list.hpp"
 #include "igsp/errors.hpp"
+#include "io/whole_file.hpp"
 
 namespace igsp {
 namespace {
@@ -80,6 +76,20 @@ void assign_table(Options& options, const toml::table& table, const std::string&
   }
 }
 
+// Every part of a dotted key is a table in the one before; the parser follows them down its stack without a limit.
+void check_depth(std::string_view text, std::string_view name) {
+  constexpr std::ptrdiff_t most_dots = 32;  // options have two parts; numbers and a comment at the end have dots too
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const std::size_t length = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, length);
+    text.remove_prefix(std::min(length + 1, text.size()));
+    const std::size_t first = line.find_first_not_of(" \t");
+    if (first != std::string_view::npos && line[first] == '#') continue;
+    if (std::ranges::count(line, '.') <= most_dots) continue;
+    throw FileError(fmt::format("{}:{}: more than {} dots: an option is called section.name", name, number, most_dots));
+  }
+}
+
 Options base_options(const toml::table& table, std::string_view name) {
   const toml::node* node = table.get(preset_key);
   if (node == nullptr) return preset("default");
@@ -112,6 +122,7 @@ std::string options_to_toml(const Options& options) {
 }
 
 Options options_from_toml(std::string_view text, std::string_view name) {
+  check_depth(text, name);
   toml::table table;
   try {
     table = toml::parse(text, name);
@@ -124,12 +135,8 @@ Options options_from_toml(std::string_view text, std::string_view name) {
 }
 
 Options read_options(const std::filesystem::path& path) {
-  if (std::filesystem::is_directory(path)) throw FileError(path.string() + ": is a directory");
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (file) text << file.rdbuf();
-  if (!file) throw FileError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
-  return options_from_toml(text.str(), path.string());
+  constexpr std::uint64_t most_bytes = 1 << 20;  // two hundred times what all options take
+  return options_from_toml(io::read_whole(path, most_bytes), path.string());
 }
 
 }  // namespace igsp

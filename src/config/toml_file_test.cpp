@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "config/option_list.hpp"
 #include "igsp/errors.hpp"
@@ -29,6 +30,32 @@ std::string message_of(std::string_view toml) {
 TEST(Toml, PresetsReadBackAsTheyWereWritten) {
   expect_same(options_from_toml(options_to_toml(preset("paper")), "text"), preset("paper"));
   expect_same(options_from_toml(options_to_toml(preset("default")), "text"), preset("default"));
+}
+
+TEST(Toml, WhatTheFuzzerHasFoundIsReadOrRefused) {
+  std::size_t read = 0, refused = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(IGSP_CORPUS)) {
+    try {
+      const std::string text = options_to_toml(read_options(entry.path()));
+      EXPECT_EQ(options_to_toml(options_from_toml(text, "printed")), text) << entry.path();
+      ++read;
+    } catch (const FileError&) {
+      ++refused;
+    } catch (const InvalidArgument&) {
+      ++refused;
+    }
+  }
+  EXPECT_GE(read, 1u);
+  EXPECT_GE(refused, 10u);
+}
+
+TEST(Toml, KeysOfManyPartsAreRefusedBeforeTheyFillTheStack) {
+  std::string deep;
+  for (int i = 0; i < 200000; ++i) deep += "a.";
+  EXPECT_NE(message_of<FileError>("threads = 1\n" + deep + "a = 1").find("igsp.toml:2: more than 32 dots"),
+            std::string::npos);
+  EXPECT_NE(message_of<FileError>("[" + deep + "a]").find("igsp.toml:1: more than 32 dots"), std::string::npos);
+  EXPECT_NO_THROW(options_from_toml("# " + deep + "\nthreads = 1\n", "text"));
 }
 
 TEST(Toml, AnyRealValuesReadBackExactly) {

@@ -35,6 +35,18 @@ class FileSizeLimit {
   rlimit previous_{};
 };
 
+struct stat status_of(const std::filesystem::path& path) {
+  struct stat status {};
+  EXPECT_EQ(stat(path.c_str(), &status), 0) << path;
+  return status;
+}
+
+void replace(const std::filesystem::path& path, std::string_view content) {
+  AtomicFile file(path);
+  file.write(content);
+  file.commit();
+}
+
 TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   const TemporaryFolder folder;
   {
@@ -53,7 +65,6 @@ TEST(AtomicFile, WithoutCommitNothingChanges) {
   {
     AtomicFile file(folder / "a.txt");
     file.write("half");
-    EXPECT_EQ(folder.files(), 2u);
   }
   EXPECT_EQ(read_bytes(folder / "a.txt"), "before");
   EXPECT_EQ(folder.files(), 1u);
@@ -79,6 +90,58 @@ TEST(AtomicFile, ASymbolicLinkStaysOne) {
   file.commit();
   EXPECT_TRUE(is_symlink(folder / "link.txt"));
   EXPECT_EQ(read_bytes(folder / "real.txt"), "after");
+}
+
+TEST(AtomicFile, ADanglingLinkIsWrittenThrough) {
+  const TemporaryFolder folder;
+  create_directory(folder / "elsewhere");
+  std::filesystem::create_symlink("elsewhere/real.txt", folder / "first.txt");
+  std::filesystem::create_symlink(folder / "first.txt", folder / "second.txt");
+  replace(folder / "second.txt", "content");
+  EXPECT_TRUE(is_symlink(folder / "first.txt") && is_symlink(folder / "second.txt"));
+  EXPECT_EQ(read_bytes(folder / "elsewhere/real.txt"), "content");
+  std::filesystem::create_symlink("circle.txt", folder / "circle.txt");
+  expect_file_error([&] { replace(folder / "circle.txt", ""); }, {"circle.txt", "Too many levels of symbolic links"});
+}
+
+TEST(AtomicFile, PermissionsAndOwnerArePassedOn) {
+  const TemporaryFolder folder;
+  const mode_t umask_before = umask(022);
+  replace(folder / "new.txt", "");
+  EXPECT_EQ(status_of(folder / "new.txt").st_mode & 07777, 0644u);
+  for (const mode_t mode : {0600, 0640, 0666, 0755}) {
+    folder.write("a.txt", "before");
+    ASSERT_EQ(chmod((folder / "a.txt").c_str(), mode), 0);
+    replace(folder / "a.txt", "after");
+    EXPECT_EQ(status_of(folder / "a.txt").st_mode & 07777, mode);
+  }
+  umask(umask_before);
+  if (chown((folder / "a.txt").c_str(), 65534, 65534) != 0) GTEST_SKIP() << "only root can give a file away";
+  replace(folder / "a.txt", "after");
+  EXPECT_EQ(status_of(folder / "a.txt").st_uid, 65534u);
+  EXPECT_EQ(status_of(folder / "a.txt").st_gid, 65534u);
+  EXPECT_EQ(status_of(folder / "a.txt").st_mode & 07777, 0755u);
+}
+
+TEST(AtomicFile, NobodyElseReadsAPrivateFileWhileItIsWritten) {
+  const TemporaryFolder folder;
+  folder.write("a.txt", "secret");
+  ASSERT_EQ(chmod((folder / "a.txt").c_str(), 0600), 0);
+  AtomicFile file(folder / "a.txt");
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    EXPECT_EQ(status_of(entry.path()).st_mode & 0777, 0600u);
+  }
+}
+
+TEST(AtomicFile, TheLongestNameIsNoneTooLong) {
+  const TemporaryFolder folder;
+  for (const std::size_t length : {248, 249, 255}) {
+    const std::filesystem::path path = folder / (std::string(length - 4, 'n') + ".txt");
+    replace(path, "content");
+    EXPECT_EQ(read_bytes(path), "content");
+  }
+  expect_file_error([&] { replace(folder / std::string(256, 'n'), ""); }, {"File name too long"});
+  EXPECT_EQ(folder.files(), 3u);
 }
 
 TEST(AtomicFile, UnwritablePlacesAreNamed) {

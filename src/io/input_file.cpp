@@ -21,10 +21,14 @@ constexpr std::size_t utf8_bytes_per_unit = 3;  // at most, of UTF-16; two units
 InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (status.type() == std::filesystem::file_type::not_found) fail("no such file");
+  if (status.type() == std::filesystem::file_type::not_found) {
+    fail(path == "-" ? "standard input is not read; save what comes out of it as a file first" : "no such file");
+  }
   if (std::filesystem::is_directory(status)) fail("is a directory, not a file");
   if (error) fail("cannot open: " + error.message());
-  if (!std::filesystem::is_regular_file(status)) fail("not a regular file");
+  if (!std::filesystem::is_regular_file(status)) {
+    fail("not a regular file: pipes and devices are not read; save what comes out of it as a file first");
+  }
   size_ = std::filesystem::file_size(path, error);
   if (error) fail("cannot open: " + error.message());
   if (size_ == 0) fail("the file is empty (0 bytes)");

@@ -33,10 +33,12 @@ inline AssignmentProblem random_problem(std::size_t sources, std::size_t targets
   std::mt19937_64 random(seed);
   AssignmentProblem problem{sources, targets, {}, 95 * units_per_bit};
   const double density = targets == 0 ? 1.0 : std::min(1.0, edges_per_source / static_cast<double>(targets));
-  std::geometric_distribution<std::size_t> skip(density);
+  const bool sparse = density < 1.0;
+  std::geometric_distribution<std::size_t> geometric(sparse ? density : 0.5);  // must lie inside (0, 1)
+  const auto skip = [&]() -> std::size_t { return sparse ? geometric(random) : 0; };
   std::exponential_distribution<double> below_threshold(1.0 / 6.0);
   for (std::size_t i = 0; i < sources; ++i) {
-    for (std::size_t j = density < 1.0 ? skip(random) : 0; j < targets; j += 1 + (density < 1.0 ? skip(random) : 0)) {
+    for (std::size_t j = skip(); j < targets; j += 1 + skip()) {
       const std::int64_t bits = 94 - static_cast<std::int64_t>(below_threshold(random));
       problem.edges.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j),
                                std::max<std::int64_t>(0, bits) * units_per_bit});

@@ -4,6 +4,8 @@
 #include <array>
 #include <map>
 
+#include "estimation/robust_fit.hpp"
+
 namespace igsp {
 namespace {
 
@@ -28,13 +30,16 @@ std::vector<CycleSupport> cycle_support(const LinkGraph& graph) {
         if (ac == later[a].end()) continue;
         const std::array<LinkStep, 3> loop = {towards(graph, ab, b), towards(graph, bc, c),
                                               towards(graph, ac->second, a)};
-        const bool closes = loop_error(graph, loop) < max_loop_error;
+        const double error = loop_error(graph, loop);
+        const bool closes = error < max_loop_error;
+        // Right links agree far better than they must; what just closes may have done so by chance.
+        const double trust = geman_mcclure_weight(error, max_loop_error / 9);
         for (int i = 0; i < 3; ++i) {
           CycleSupport& entry = found[loop[i].link];
           ++(closes ? entry.triangles : entry.open);
           if (closes) {
-            entry.support +=
-                std::min(graph.links[loop[(i + 1) % 3].link].weight, graph.links[loop[(i + 2) % 3].link].weight);
+            entry.support += trust * std::min(graph.links[loop[(i + 1) % 3].link].weight,
+                                              graph.links[loop[(i + 2) % 3].link].weight);
           }
         }
       }

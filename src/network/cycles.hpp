@@ -10,7 +10,7 @@ namespace igsp {
 struct CycleSupport {
   std::size_t triangles = 0;  ///< those that close
   std::size_t open = 0;       ///< those that do not: one of their three links is wrong
-  double support = 0;         ///< of those that close, the sum of the weaker other link's weight
+  double support = 0;         ///< sum of the weaker other link's weight, for a triangle that closes exactly
 };
 
 /// One entry per link.

@@ -85,6 +85,18 @@ void name_states(Network& network, const MeasuredGraph& measured, const Balanced
   }
 }
 
+}  // namespace
+
+void decide(Network& network, std::span<const ScanShape> shapes, const NetworkOptions& options) {
+  const MeasuredGraph measured =
+      measured_graph(network.links, shapes, network.voxel_size, options.min_unconfirmed_confidence);
+  const std::vector<CycleSupport> support = cycle_support(measured.graph);
+  const std::vector<std::size_t> forest = spanning_forest(measured.graph, support);
+  const BalancedPoses poses = balance_poses(measured.graph, forest, anchors_of(measured.graph, forest));
+  name_states(network, measured, poses, support);
+  place_scans(network, poses, shapes);
+}
+
 void measure_residuals(Network& network, std::span<const ScanShape> shapes) {
   double squares = 0;
   std::size_t count = 0;
@@ -99,19 +111,6 @@ void measure_residuals(Network& network, std::span<const ScanShape> shapes) {
     ++count;
   }
   network.bundle_error = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
-}
-
-}  // namespace
-
-void decide(Network& network, std::span<const ScanShape> shapes, const NetworkOptions& options) {
-  const MeasuredGraph measured =
-      measured_graph(network.links, shapes, network.voxel_size, options.min_unconfirmed_confidence);
-  const std::vector<CycleSupport> support = cycle_support(measured.graph);
-  const std::vector<std::size_t> forest = spanning_forest(measured.graph, support);
-  const BalancedPoses poses = balance_poses(measured.graph, forest, anchors_of(measured.graph, forest));
-  name_states(network, measured, poses, support);
-  place_scans(network, poses, shapes);
-  measure_residuals(network, shapes);
 }
 
 }  // namespace igsp

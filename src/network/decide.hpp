@@ -9,4 +9,7 @@ namespace igsp {
 /// every scan lies, and fills in the rest. `shapes` by scan.
 void decide(Network& network, std::span<const ScanShape> shapes, const NetworkOptions& options);
 
+/// How far the pairs' own answers are from the network's: per link and for all that are used.
+void measure_residuals(Network& network, std::span<const ScanShape> shapes);
+
 }  // namespace igsp

@@ -87,6 +87,18 @@ TEST(CycleSupport, TellsTrianglesThatCloseFromThoseThatDoNot) {
   EXPECT_EQ(support[4].open, 1u);
 }
 
+TEST(CycleSupport, CountsLessWhereATriangleJustCloses) {
+  const std::vector<Transformation> truth(3, Transformation::Identity());
+  LinkGraph graph{std::vector<Eigen::Vector3d>(3, Eigen::Vector3d::Zero()), {}};
+  Vector6 off = Vector6::Zero();
+  off[4] = 2;
+  graph.links = {link_between(truth, 0, 1, off), link_between(truth, 1, 2), link_between(truth, 2, 0)};
+  const auto support = cycle_support(graph);
+  EXPECT_EQ(support[0].triangles, 1u);
+  EXPECT_LT(support[0].support, 0.5 * graph.links[1].weight);
+  EXPECT_GT(support[0].support, 0);
+}
+
 TEST(Components, LargestFirstAndBridgesAreTheEdgesInNoLoop) {
   const std::vector<Edge> edges = {{4, 5}, {5, 6}, {6, 4}, {6, 7}, {1, 2}};
   const auto components = connected_components(8, edges);

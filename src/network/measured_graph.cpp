@@ -12,8 +12,8 @@ namespace {
 // scans: this much at one sigma.
 constexpr double pull_floor = 0.1;  // [voxels]
 
-// What is right within about two voxels is right; loops are judged by it.
-constexpr double judging_floor = 0.5;  // [voxels]
+// What is right within two or three voxels is right; loops are judged by it.
+constexpr double judging_floor = 0.7;  // [voxels]
 
 // Right poses have at most 0.05 (docs/network.md); beyond the first a pair needs others to confirm it, beyond the
 // second it is out.

@@ -6,6 +6,7 @@
 #include "igsp/network.hpp"
 #include "network/common_scale.hpp"
 #include "network/decide.hpp"
+#include "network/joint_refinement.hpp"
 #include "network/pairs.hpp"
 
 namespace igsp {
@@ -89,6 +90,10 @@ Network register_network(std::size_t scans, const FeatureSource& features, const
                                  [&](double done) { report(progress, "pairs", done); });
   report(progress, "pairs", 1);
   decide(network, shapes, options);
+  report(progress, "network", 0);
+  if (options.pair.refinement.enabled) refine_jointly(network, views, options.pair);
+  measure_residuals(network, shapes);
+  report(progress, "network", 1);
   return network;
 }
 

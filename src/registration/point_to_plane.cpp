@@ -108,7 +108,7 @@ Linearisation linearise_at(Surface& source, Surface& target, const Transformatio
                            std::size_t max_points) {
   const NormalEquations equations = linearise(source, target, pose, radius, max_points);
   const double variance = equations.weight_sum > 0 ? equations.weighted_squares / equations.weight_sum : 0.0;
-  return {equations.centre, equations.information, variance, equations.pairs};
+  return {equations.centre, equations.information, equations.gradient, variance, equations.pairs};
 }
 
 }  // namespace igsp

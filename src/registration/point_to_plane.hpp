@@ -47,11 +47,12 @@ struct PointToPlaneOptions {
 Transformation refine_point_to_plane(Surface& source, Surface& target, const Transformation& initial,
                                      const PointToPlaneOptions& options);
 
-/// The normal equations of one step at a pose: sum of J^T w J over pairs, and the variance of their residuals.
+/// The normal equations of one step at a pose: sum of J^T w J and of J^T w r over pairs, and the variance of their residuals.
 /// Rotations about `centre` (target frame) first, then translations.
 struct Linearisation {
   Eigen::Vector3d centre;
   Eigen::Matrix<double, 6, 6> hessian;
+  Eigen::Matrix<double, 6, 1> gradient;
   double residual_variance = 0;  ///< [units of the cloud ^ 2]
   std::size_t pairs = 0;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ctime>
 #include <iostream>
+#include <new>
 #include <optional>
 
 #include "align/answer.hpp"
@@ -38,6 +39,16 @@ struct AlignSettings {
   bool force = false, quiet = false, verbose = false, no_diagnose = false;
   std::shared_ptr<OptionFlags> option_flags;
 };
+
+// `otherwise` is what to say when memory runs out.
+template <typename Step>
+auto with_memory(const std::string& otherwise, const Step& step) {
+  try {
+    return step();
+  } catch (const std::bad_alloc&) {
+    throw FileError(otherwise);
+  }
+}
 
 // Of all threads.
 double cpu_now_s() {
@@ -101,9 +112,12 @@ void stream_large_clouds(CloudInput& source, CloudInput& target, const ScaleOpti
 
 // The reports say what happened in any case; the other files exist only for an answer to rely on, unless forced.
 void write_outputs(const AlignSettings& settings, const Result& result, const Json& report, const CloudInput& source,
-                   const CloudInput& target) {
+                   const CloudInput& target, ProgressBar& bar) {
   if (!settings.report.empty()) write_text(settings.report, report_text(report));
-  if (!settings.html.empty()) write_text(settings.html, report_page(report, source.points, target.points));
+  if (!settings.html.empty()) {
+    with_memory(fmt::format("{}: not enough memory for the page", settings.html.string()),
+                [&] { write_text(settings.html, report_page(report, source.points, target.points)); });
+  }
   const bool wanted = !settings.aligned.empty() || !settings.transformation.empty();
   if (!wanted) return;
   if (!result.has_estimate || !(result.registered || settings.force)) {
@@ -120,9 +134,10 @@ void write_outputs(const AlignSettings& settings, const Result& result, const Js
   if (settings.aligned.empty()) return;
   // Floats are written only where their rounding is far below what the scan resolves.
   const double tolerance = 1e-4 * result.voxel_size;
-  for (const std::string& line : write_moved_output(source, settings.aligned, result.target_from_source, tolerance)) {
-    std::cout << line << "\n";
-  }
+  const std::vector<std::string> notes =
+      write_moved_output(source, settings.aligned, result.target_from_source, tolerance, bar.callback());
+  bar.finish();
+  for (const std::string& note : notes) std::cout << note << "\n";
 }
 
 std::vector<Diagnosis> causes_of(Result& refused, const CloudInput& source, const CloudInput& target, bool search,
@@ -167,8 +182,9 @@ int run_align(const AlignSettings& settings) {
   }
   std::cout << answer_text(result, diagnosis, options.scale.voxel_size > 0.0, now_s() - start);
   if (settings.verbose) std::cout << details_text(result);
+  std::cout.flush();  // before the bar of what is written
   write_outputs(settings, result, align_report(result, diagnosis, source, target, cpu_seconds, warnings), source,
-                target);
+                target, bar);
   return result.registered ? exit_registered : exit_not_registered;
 }
 
@@ -178,7 +194,7 @@ constexpr const char* examples =
     "  igsp align a.pcd b.xyz --preset paper --voxel-size 0.1 -o aligned.ply --transform T.txt --report run.json\n"
     "  igsp align a.ply b.ply --config igsp.toml --threads 4\n"
     "The options start from --preset or --config; flags override them. Exit codes: 0 registered, 1 not registered,\n"
-    "2 usage or option, 3 input or output, 130 interrupted. PLY, PCD and text (XYZ, TXT, CSV, PTS) are read, written;\n"
+    "2 usage or option, 3 input or output, 128 + signal. PLY, PCD and text (XYZ, TXT, CSV, PTS) are read, written;\n"
     "the command of the Python package also takes LAS, LAZ, E57 and PTX, and writes them moved, their attributes kept.";
 
 }  // namespace
@@ -214,7 +230,12 @@ void add_align_command(CLI::App& app, Command& command) {
   align->add_flag("--verbose", settings->verbose, "also a line per iteration and per stage")->excludes(quiet);
   settings->option_flags = add_option_flags(*align);
   align->footer(examples);
-  align->callback([settings, &command] { command = [settings] { return run_align(*settings); }; });
+  align->callback([settings, &command] {
+    command = [settings] {
+      return with_memory("not enough memory for these clouds; a smaller --max-points streams them",
+                         [&] { return run_align(*settings); });
+    };
+  });
 }
 
 }  // namespace igsp::cli

@@ -76,7 +76,8 @@ TEST_F(BenchmarkFiles, GroupMayBeLeftOutAndColumnsMayStandInAnyOrder) {
 
 TEST_F(BenchmarkFiles, BrokenListsAreNamedByLineAndColumn) {
   const std::string good = "a,g,x.ply,y.ply,t.txt,5,0.005,1\n";
-  complains("", {"cases.csv", "line 1", "no header"});
+  complains("", {"cases.csv", "empty"});
+  complains("\n", {"cases.csv", "line 1", "no header"});
   complains(header, {"line 2", "no case"});
   complains("name,source,target\n", {"line 1", "truth is missing"});
   complains(header + good + "b,g,x.ply,y.ply,t.txt,five,0.005,1\n",

@@ -14,6 +14,7 @@
 #include "benchmark/run.hpp"
 #include "benchmark/summary.hpp"
 #include "config/preset.hpp"
+#include "files/output_file.hpp"
 #include "igsp/errors.hpp"
 #include "igsp/options.hpp"
 #include "shell/commands.hpp"
@@ -45,11 +46,6 @@ Key key_of(const BenchmarkRow& row) {
 }
 Key key_of(const BenchmarkTask& task) {
   return {task.one.name, task.preset, scramble_text(task.scramble_seed)};
-}
-
-bool same_file(const fs::path& a, const fs::path& b) {
-  std::error_code ignored;
-  return fs::weakly_canonical(fs::absolute(a), ignored) == fs::weakly_canonical(fs::absolute(b), ignored);
 }
 
 void check(const BenchmarkSettings& settings) {
@@ -196,7 +192,7 @@ int run_export(const BenchmarkSettings& settings) {
     throw InvalidArgument(fmt::format("--export {0}: {0}/cases.csv is there already", settings.exported.string()));
   }
   const std::size_t written = export_cases(cases, seed_of(settings), settings.exported);
-  fmt::print("{} of {} cases are in {}\n", written, cases.size(), list.string());
+  std::cout << fmt::format("{} of {} cases are in {}\n", written, cases.size(), list.string());
   return written == cases.size() ? exit_registered : exit_input_output;
 }
 
@@ -238,7 +234,7 @@ constexpr const char* notes =
     "  igsp benchmark cases.csv\n"
     "  igsp benchmark cases.csv --preset default --preset paper --jobs 4 --only park --out new.csv --compare old.csv\n"
     "Exit codes: 0 it ran, whatever the answers; 2 usage; 3 a file that cannot be read or written, also of a single\n"
-    "case (the others are run); 130 interrupted.";
+    "case (the others are run); 128 + signal.";
 
 }  // namespace
 

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <iostream>
+
 #include "completion/command_description.hpp"
 #include "completion/completion.hpp"
 #include "igsp/errors.hpp"
@@ -30,7 +32,7 @@ void add_completion_command(CLI::App& app, Command& command) {
   completion->footer(examples);
   completion->callback([shell, &app, &command] {
     command = [shell, &app] {
-      fmt::print("{}", completion_for(*shell, describe(app)));
+      std::cout << completion_for(*shell, describe(app));
       return exit_registered;
     };
   });

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <iostream>
+
 #include "completion/command_description.hpp"
 #include "completion/manual_page.hpp"
 #include "shell/commands.hpp"
@@ -19,7 +21,7 @@ void add_manual_command(CLI::App& app, Command& command) {
   manual->footer(examples);
   manual->callback([&app, &command] {
     command = [&app] {
-      fmt::print("{}", manual_page(describe(app)));
+      std::cout << manual_page(describe(app));
       return exit_registered;
     };
   });

@@ -51,12 +51,12 @@ int run_evaluate(const EvaluateSettings& settings) {
     std::cout << json.dump(2) << "\n";
     return exit_registered;
   }
-  fmt::print("e_r  {:.6g} deg = {:.6g} mdeg\n", degrees, 1000 * degrees);
-  fmt::print("e_t  {:.6g} (depends on the origin)\n", error.translation);
+  std::cout << fmt::format("e_r  {:.6g} deg = {:.6g} mdeg\n", degrees, 1000 * degrees);
+  std::cout << fmt::format("e_t  {:.6g} (depends on the origin)\n", error.translation);
   if (has_source) {
-    fmt::print("centroid displacement  {:.6g}\n", error.centroid_displacement);
+    std::cout << fmt::format("centroid displacement  {:.6g}\n", error.centroid_displacement);
   } else {
-    fmt::print("centroid displacement  needs --source\n");
+    std::cout << "centroid displacement  needs --source\n";
   }
   return exit_registered;
 }

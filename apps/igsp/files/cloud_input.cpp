@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "files/cloud_file.hpp"
+#include "files/point_sample.hpp"
 #include "igsp/errors.hpp"
 #include "spatial/voxel_grid.hpp"
 
@@ -16,30 +17,6 @@ void report(const ProgressCallback& progress, std::string_view stage, std::size_
   const double fraction = all > 0 ? std::min(1.0, static_cast<double>(done) / static_cast<double>(all)) : 0.0;
   if (progress && !progress({stage, fraction})) throw Cancelled();
 }
-
-// Keeps every stride-th point of a stream; doubles the stride whenever more than `limit` would be kept.
-class ThinnedStream {
- public:
-  explicit ThinnedStream(std::size_t limit) : limit_(limit) {}
-
-  void add(PointView chunk) {
-    for (const Eigen::Vector3d& point : chunk) {
-      if (seen_++ % stride_ == 0) kept_.push_back(point);
-      if (kept_.size() > limit_) halve();
-    }
-  }
-  Points take() { return std::move(kept_); }
-
- private:
-  void halve() {
-    for (std::size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i] = kept_[2 * i];
-    kept_.resize((kept_.size() + 1) / 2);
-    stride_ *= 2;
-  }
-
-  std::size_t limit_, seen_ = 0, stride_ = 1;
-  Points kept_;
-};
 
 void check_extent(const CloudInput& cloud) {
   const auto fail = [&](const std::string& why) {
@@ -62,7 +39,7 @@ CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points,
   cloud.options = options;
   cloud.format = reader.format();
   cloud.bounds = {Eigen::Vector3d::Constant(HUGE_VAL), Eigen::Vector3d::Constant(-HUGE_VAL)};
-  ThinnedStream kept(max_points);
+  PointSample kept(max_points);
   for (PointView chunk = reader.next_chunk(); !chunk.empty(); chunk = reader.next_chunk()) {
     for (const Eigen::Vector3d& point : chunk) {
       cloud.bounds.min = cloud.bounds.min.cwiseMin(point);

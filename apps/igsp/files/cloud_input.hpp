@@ -15,15 +15,15 @@ struct CloudInput {
   std::filesystem::path path;
   ReadOptions options;      ///< as it was read, and is read again
   std::string format;       ///< for people: "PLY, ascii"
-  Points points;            ///< all of them, or every n-th if the file holds more than were asked for
+  Points points;            ///< all of them, or a sample if the file holds more than were asked for
   std::size_t total = 0;    ///< finite points in the file
   std::size_t dropped = 0;  ///< points left out for a coordinate that is not finite
   Bounds bounds;            ///< of all points
   bool whole() const { return points.size() == total; }
 };
 
-/// Reads a cloud in one pass; one of more than `max_points` is thinned to every 2nd, 4th, ... point on the way, so that
-/// memory stays bounded. `stage` is the name of the progress. Throws FileError (also for a cloud without any extent).
+/// Reads a cloud in one pass; of one of more than `max_points` a sample is kept that does not depend on their order, so
+/// that memory stays bounded. `stage` is the name of the progress. Throws FileError (also for a cloud without any extent).
 CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points, std::string_view stage,
                       const ProgressCallback& progress, const ReadOptions& options = {});
 

@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 
 #include "igsp/errors.hpp"
+#include "io/input_file.hpp"
 
 namespace igsp::cli {
 namespace {
@@ -52,7 +50,6 @@ std::vector<std::string> split(std::string_view rest, const std::filesystem::pat
 }
 
 void add_line(CsvTable& table, std::string_view text, std::size_t line) {
-  if (text.ends_with('\r')) text.remove_suffix(1);
   if (text.find_first_not_of(" ,") == std::string_view::npos) return;  // blank, also as spreadsheets write it
   std::vector<std::string> fields = split(text, table.path, line);
   if (table.header.empty()) {
@@ -71,17 +68,12 @@ void add_line(CsvTable& table, std::string_view text, std::size_t line) {
 
 CsvTable read_csv(const std::filesystem::path& path, LastLine last_line) {
   CsvTable table{.path = path, .header = {}, .records = {}};
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw FileError(path.string() + ": is a folder");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw FileError(fmt::format("{}: {}", path.string(), std::strerror(errno)));
-  std::string text;
-  for (std::size_t line = 1; std::getline(file, text); ++line) {
-    if (file.eof() && last_line == LastLine::ended) break;
-    if (line == 1 && text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // byte order mark
-    add_line(table, text, line);
+  io::InputFile file(path);
+  file.detect_encoding();
+  for (std::string_view text; file.read_line(text);) {
+    if (file.line_end().empty() && last_line == LastLine::ended) break;
+    add_line(table, text, file.line());
   }
-  if (file.bad()) throw FileError(path.string() + ": cannot be read");
   if (table.header.empty()) fail(path, 1, ": the file has no header");
   return table;
 }

@@ -24,6 +24,8 @@ struct ForeignFormats {
   std::function<bool(const std::filesystem::path& source, const std::filesystem::path& output)> moves;
   std::function<void(const std::filesystem::path& source, const std::filesystem::path& output, const Transformation&)>
       write_moved;
+  /// Called in a signal handler when the user asks to stop, so that what runs here does; may be null.
+  void (*on_interrupt)() = nullptr;
 };
 
 /// Those of this process: it runs one command line. Set before any command runs, not changed later.

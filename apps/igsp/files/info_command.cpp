@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <vector>
 
 #include "files/cloud_input.hpp"
@@ -46,16 +47,16 @@ void print_info(const CloudInput& cloud) {
   const double magnitude = cloud.bounds.min.cwiseAbs().cwiseMax(cloud.bounds.max.cwiseAbs()).maxCoeff();
   const double voxel_size = choose_voxel_size(cloud.points, cloud.points, {});
   const double spacing = spacing_of(cloud.points, cloud.bounds, voxel_size);
-  fmt::print("{}\n", cloud.path.string());
-  fmt::print("  format                {}\n", cloud.format);
-  fmt::print("  points                {}{}\n", cloud.total,
+  std::cout << cloud.path.string() << "\n";
+  std::cout << fmt::format("  format                {}\n", cloud.format);
+  std::cout << fmt::format("  points                {}{}\n", cloud.total,
              cloud.dropped > 0 ? fmt::format(" and {} dropped, not finite", cloud.dropped) : "");
-  fmt::print("  extent                {:.6g} x {:.6g} x {:.6g}\n", extent.x(), extent.y(), extent.z());
-  fmt::print("  from                  {:.10g}\n", fmt::join(cloud.bounds.min.data(), cloud.bounds.min.data() + 3, " "));
-  fmt::print("  to                    {:.10g}\n", fmt::join(cloud.bounds.max.data(), cloud.bounds.max.data() + 3, " "));
-  fmt::print("  largest coordinate    {:.10g} (as float: exact to {:.2g})\n", magnitude, std::ldexp(magnitude, -24));
-  fmt::print("  spacing               {:.4g}{}\n", spacing, cloud.whole() ? "" : " (of the points kept in memory)");
-  fmt::print("  suggested voxel size  {:.4g}\n", voxel_size);
+  std::cout << fmt::format("  extent                {:.6g} x {:.6g} x {:.6g}\n", extent.x(), extent.y(), extent.z());
+  std::cout << fmt::format("  from                  {:.10g}\n", fmt::join(cloud.bounds.min.data(), cloud.bounds.min.data() + 3, " "));
+  std::cout << fmt::format("  to                    {:.10g}\n", fmt::join(cloud.bounds.max.data(), cloud.bounds.max.data() + 3, " "));
+  std::cout << fmt::format("  largest coordinate    {:.10g} (as float: exact to {:.2g})\n", magnitude, std::ldexp(magnitude, -24));
+  std::cout << fmt::format("  spacing               {:.4g}{}\n", spacing, cloud.whole() ? "" : " (of the points kept in memory)");
+  std::cout << fmt::format("  suggested voxel size  {:.4g}\n", voxel_size);
 }
 
 struct InfoSettings {

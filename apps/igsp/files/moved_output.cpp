@@ -10,7 +10,6 @@
 #include "files/foreign_formats.hpp"
 #include "igsp/errors.hpp"
 #include "io/moved_copy.hpp"
-#include "shell/interrupt.hpp"
 
 namespace igsp::cli {
 namespace {
@@ -30,12 +29,15 @@ double rounding_of_floats(const Bounds& bounds, const Transformation& target_fro
 
 /// x, y and z of all points, in chunks.
 void write_coordinates(const CloudInput& source, const fs::path& output, const Transformation& target_from_source,
-                       bool floats) {
+                       bool floats, const ProgressCallback& progress) {
   CloudFile reader(source.path, source.options);
   Points moved;
+  std::size_t read = 0;
   const ChunkSource chunks = [&]() -> PointView {
-    stop_if_interrupted();
+    const double fraction = static_cast<double>(read) / static_cast<double>(source.total);
+    if (!progress({"write", fraction})) throw Cancelled();
     const PointView chunk = reader.next_chunk();
+    read += chunk.size();
     moved.assign(chunk.begin(), chunk.end());
     for (Eigen::Vector3d& point : moved) point = target_from_source * point;
     return moved;
@@ -75,7 +77,8 @@ void check_moved_output(const fs::path& source, const fs::path& output) {
 }
 
 std::vector<std::string> write_moved_output(const CloudInput& source, const fs::path& output,
-                                            const Transformation& target_from_source, double tolerance) {
+                                            const Transformation& target_from_source, double tolerance,
+                                            const ProgressCallback& progress) {
   if (moves_foreign(source.path, output)) {
     write_moved_foreign(source.path, output, target_from_source);
     return {};
@@ -83,12 +86,11 @@ std::vector<std::string> write_moved_output(const CloudInput& source, const fs::
   const double rounding = rounding_of_floats(source.bounds, target_from_source);
   const bool floats = rounding <= tolerance;
   if (reads_foreign(source.path) || !io::keeps_properties(source.path, output)) {
-    write_coordinates(source, output, target_from_source, floats);
+    write_coordinates(source, output, target_from_source, floats, progress);
     return kept_coordinates_only(source, output);
   }
-  const ProgressCallback unless_interrupted = [](const Progress&) { return !interrupted(); };
   const bool other_type = io::write_moved(source.path, output, target_from_source,
-                                          {.read = source.options, .doubles = !floats, .progress = unless_interrupted});
+                                          {.read = source.options, .doubles = !floats, .progress = progress});
   if (!other_type) return {};
   return {fmt::format("{} holds its coordinates as doubles{}", output.string(),
                       floats ? ": the integers of the source cannot hold moved ones"

@@ -15,6 +15,7 @@ void check_moved_output(const std::filesystem::path& source, const std::filesyst
 /// source, else x, y and z. Coordinates are floats only where these are exact to `tolerance`. Read again from its file
 /// in chunks. Returns lines for the user on what became of the rest. Throws FileError, Cancelled.
 std::vector<std::string> write_moved_output(const CloudInput& source, const std::filesystem::path& output,
-                                            const Transformation& target_from_source, double tolerance);
+                                            const Transformation& target_from_source, double tolerance,
+                                            const ProgressCallback& progress);
 
 }  // namespace igsp::cli

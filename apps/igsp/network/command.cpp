@@ -119,7 +119,7 @@ void add_network_command(CLI::App& app, Command& command) {
   network
       ->add_option("--min-unconfirmed-confidence", settings->options.min_unconfirmed_confidence,
                    wrapped("a link in no loop joins scans only with at least this confidence, in [0.5, 1]; default "
-                           "0.8"))
+                           "0.95"))
       ->type_name("NUMBER");
   add_columns_flag(*network, settings->read);
   network

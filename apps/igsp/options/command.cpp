@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <iostream>
+
 #include "config/option_list.hpp"
 #include "config/toml_file.hpp"
 #include "igsp/version.hpp"
@@ -29,9 +31,9 @@ Json list_of(const Options& options) {
 int run_options(const OptionFlags& flags, bool json) {
   const Options options = resolve(flags);
   if (json) {
-    fmt::print("{}\n", list_of(options).dump(2));
+    std::cout << list_of(options).dump(2) << "\n";
   } else {
-    fmt::print("# Options of igsp {}\n{}", version, options_to_toml(options));
+    std::cout << fmt::format("# Options of igsp {}\n{}", version, options_to_toml(options));
   }
   return exit_registered;
 }

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
+#include <string>
 
 #include "igsp/errors.hpp"
+#include "io/whole_file.hpp"
 
 namespace igsp::cli {
 namespace {
@@ -123,15 +124,15 @@ class RunCheck {
 }  // namespace
 
 Json read_run(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) throw FileError(path.string() + ": cannot be read");
+  constexpr std::uint64_t most_bytes = 1 << 26;  // a run of thousands of keypoints has a hundredth of it
+  const std::string text = io::read_whole(path, most_bytes);
   const RunCheck check(path);
   const auto limit_depth = [&](int depth, Json::parse_event_t, Json&) {
     if (depth > max_depth) check.fail("nested too deep");
     return true;
   };
   try {
-    const Json run = Json::parse(file, limit_depth);
+    const Json run = Json::parse(text, limit_depth);
     check.check(run, Json::parse(pattern_text), "");
     check.check_correspondences(run);
     return run;

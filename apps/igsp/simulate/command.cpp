@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <iostream>
+
 #include "files/output_file.hpp"
 #include "igsp/errors.hpp"
 #include "igsp/io.hpp"
@@ -34,17 +36,17 @@ int run_simulate(const SimulateSettings& settings) {
     stop_if_interrupted();
     const fs::path cloud = file(fmt::format("station_{}.ply", i));
     write_points(cloud, scans[i].points, {.format = FileFormat::ply_binary_little_endian, .single_precision = true});
-    fmt::print("{}  {} points\n", cloud.string(), scans[i].points.size());
+    std::cout << fmt::format("{}  {} points\n", cloud.string(), scans[i].points.size());
   }
   for (std::size_t i = 1; i < scans.size(); ++i) {
     const fs::path truth = file(fmt::format("station_{}_to_0.txt", i));
     write_transformation(truth, scans[0].world_from_scanner.inverse() * scans[i].world_from_scanner);
-    fmt::print("{}  true target_from_source, source station_{}, target station_0\n", truth.string(), i);
+    std::cout << fmt::format("{}  true target_from_source, source station_{}, target station_0\n", truth.string(), i);
   }
   if (scans.size() < 2) return exit_registered;
   const std::string source = file("station_1.ply"), target = file("station_0.ply"), truth = file("station_1_to_0.txt");
-  fmt::print("try: igsp align {} {} --transform T.txt\n", source, target);
-  fmt::print("     igsp evaluate --transform T.txt --truth {} --source {}\n", truth, source);
+  std::cout << fmt::format("try: igsp align {} {} --transform T.txt\n", source, target);
+  std::cout << fmt::format("     igsp evaluate --transform T.txt --truth {} --source {}\n", truth, source);
   return exit_registered;
 }
 

@@ -1,0 +1,109 @@
+"""Breaks the method's formulas one at a time and says which test notices.
+
+Works on a copy of the sources in the folder of --build; a mutant that no test notices is a survivor, and one whose text is not in
+the source any more is stale: both end with exit code 1. The list is scripts/mutant_list.py.
+
+usage: mutants.py [--build build/mutants] [--only REGEX] [--jobs N] [--every N] [--list]
+"""
+import argparse
+import re
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from mutant_list import MUTANTS
+
+ROOT = Path(__file__).resolve().parent.parent
+PROGRAMS = ["igsp_tests", "igsp_end_to_end_tests"]  # the quick one first
+LONGEST_TEST_S = 900  # a loop that a mistake makes endless is noticed, too
+
+
+def run(*command, **options):
+    return subprocess.run([str(part) for part in command], capture_output=True, text=True, **options)
+
+
+def copy_sources(source):
+    shutil.rmtree(source, ignore_errors=True)
+    for name in run("git", "-C", ROOT, "ls-files").stdout.splitlines():
+        if (ROOT / name).is_file():
+            (source / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, source / name)
+
+
+class Workshop:
+    def __init__(self, build, jobs):
+        # Laid out as the project itself, so that the compiler cache knows most of the objects.
+        self.source, self.build, self.jobs = build, build / "build/release", jobs
+        copy_sources(self.source)
+        configured = run("cmake", "--preset", "release", "-DIGSP_BUILD_APPS=OFF", "-DIGSP_TEST_PYTHON=OFF", cwd=build)
+        if configured.returncode:
+            sys.exit(configured.stdout + configured.stderr)
+
+    def make(self, program):
+        return run("cmake", "--build", self.build, "-j", self.jobs, "--target", program)
+
+    def noticed_by(self, program):
+        """The first test that fails, or nothing."""
+        try:
+            done = run(self.build / "bin" / program, "--gtest_fail_fast", "--gtest_brief=1", timeout=LONGEST_TEST_S)
+        except subprocess.TimeoutExpired:
+            return f"{program} does not end"
+        if done.returncode == 0:
+            return None
+        failed = re.search(r"\[  FAILED  \] ([\w/.]+)", done.stdout)
+        return failed.group(1) if failed else f"{program} ends with {done.returncode}"
+
+    def judge(self, mutant):
+        name, original, mutated, _ = mutant
+        path = self.source / "src" / name
+        text = path.read_text()
+        if text.count(original) != 1:
+            return f"STALE: stands there {text.count(original)} times"
+        path.write_text(text.replace(original, mutated))
+        try:
+            for program in PROGRAMS:
+                if self.make(program).returncode:
+                    return "does not build"
+                if test := self.noticed_by(program):
+                    return test
+            return "SURVIVES"
+        finally:
+            path.write_text(text)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--build", type=Path, default=ROOT / "build/mutants")
+    parser.add_argument("--only", default="", help="of files and what is broken")
+    parser.add_argument("--every", type=int, default=1)
+    parser.add_argument("--jobs", default="2")
+    parser.add_argument("--list", action="store_true")
+    arguments = parser.parse_args()
+    chosen = [m for m in MUTANTS if re.search(arguments.only, f"{m[0]}: {m[3]}")][:: arguments.every]
+    if arguments.list:
+        for name, original, _, what in chosen:
+            count = (ROOT / "src" / name).read_text().count(original)
+            print(f"{name:<40} {what}{'' if count == 1 else f'  STALE: stands there {count} times'}")
+        print(f"{len(chosen)} mutants")
+        return any((ROOT / "src" / m[0]).read_text().count(m[1]) != 1 for m in chosen)
+    workshop = Workshop(arguments.build, arguments.jobs)
+    for program in PROGRAMS:
+        built = workshop.make(program)
+        if built.returncode:
+            sys.exit(built.stdout)
+        if test := workshop.noticed_by(program):
+            sys.exit(f"the unbroken sources do not pass {test}")
+    bad = 0
+    for mutant in chosen:
+        start = time.monotonic()
+        verdict = workshop.judge(mutant)
+        bad += verdict.startswith(("STALE", "SURVIVES"))
+        print(f"{mutant[0]:<40} {mutant[3]:<45} {verdict}  ({time.monotonic() - start:.0f} s)", flush=True)
+    print(f"{len(chosen) - bad} of {len(chosen)} noticed")
+    return bad > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,153 @@
+#include "network/joint_refinement.hpp"
+
+#include <memory>
+#include <optional>
+
+#include "core/parallel.hpp"
+#include "network/pose_equations.hpp"
+#include "registration/point_to_plane.hpp"
+
+namespace igsp {
+namespace {
+
+// As in the last steps of the fine registration of a pair, [voxels].
+constexpr double normal_radius = 1.5;
+constexpr double search_radius = 1.0;
+constexpr double first_radius = 1.5;  // the pose graph may have moved a scan further than a pair's last step would
+constexpr std::size_t max_points = 8000;
+
+constexpr int max_steps = 10;
+constexpr double small_step = 1e-4;  // [voxels, rad]
+constexpr std::size_t min_pairs = 30;
+
+// What the surfaces of a link leave open must not make the system singular: every link also resists motion a little,
+// this much at one sigma, without pulling anywhere.
+constexpr double damping = 1.0;  // [voxels, or at the rim of the scan]
+
+// A scan in its own centred frame, lengths in voxels, with all normals known, so that several threads may read it.
+class SharedSurface {
+ public:
+  explicit SharedSurface(const Features& features) : points_(features.fine_points), centre_(Eigen::Vector3d::Zero()) {
+    for (Eigen::Vector3d& point : points_) point /= features.voxel_size;
+    for (const Eigen::Vector3d& point : points_) centre_ += point / static_cast<double>(points_.size());
+    for (const Eigen::Vector3d& point : points_) squared_size_ += (point - centre_).squaredNorm() / points_.size();
+    surface_.emplace(points_, PointGrid(points_, 1.0), normal_radius);
+    for (std::size_t i = 0; i < points_.size(); ++i) surface_->normal(i);
+  }
+  SharedSurface(const SharedSurface&) = delete;
+  SharedSurface& operator=(const SharedSurface&) = delete;
+
+  Surface& surface() { return *surface_; }
+  const Eigen::Vector3d& centre() const { return centre_; }
+  double squared_size() const { return squared_size_; }
+
+ private:
+  Points points_;
+  Eigen::Vector3d centre_;
+  double squared_size_ = 0;
+  std::optional<Surface> surface_;
+};
+
+class Bundle {
+ public:
+  Bundle(Network& network, std::span<const Features* const> features, const Options& options)
+      : network_(network), features_(features), threads_(options.threads) {
+    const std::size_t scans = network.scans.size();
+    poses_.resize(scans, Transformation::Identity());
+    is_free_.resize(scans, false);
+    surfaces_.resize(scans);
+    for (const NetworkLink& link : network.links) {
+      if (link.state == LinkState::used || link.state == LinkState::unconfirmed) links_.push_back(&link);
+    }
+    for (const std::vector<std::size_t>& component : network.components) {
+      for (const std::size_t i : component) {
+        is_free_[i] = i != component.front();
+        poses_[i] = local_pose(i);
+      }
+    }
+    parallel_blocks(scans, threads_, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (network.components[network.scans[i].component].size() > 1) {
+          surfaces_[i] = std::make_unique<SharedSurface>(*features_[i]);
+        }
+      }
+    });
+    centres_.resize(scans, Eigen::Vector3d::Zero());
+    for (std::size_t i = 0; i < scans; ++i) {
+      if (surfaces_[i]) centres_[i] = surfaces_[i]->centre();
+    }
+  }
+
+  void run() {
+    if (links_.empty()) return;
+    for (int k = 0; k < max_steps; ++k) {
+      const auto steps = linearise(k == 0 ? first_radius : search_radius).solve();
+      if (!steps || apply_steps(*steps, centres_, poses_) < small_step) break;
+    }
+    write_back(linearise(search_radius).covariances());
+  }
+
+ private:
+  // From the scan's centred frame in voxels to the world in voxels.
+  Transformation local_pose(std::size_t i) const {
+    Transformation pose = network_.scans[i].world_from_scan;
+    pose.translation() = pose * features_[i]->origin / network_.voxel_size;
+    return pose;
+  }
+
+  PoseEquations linearise(double radius) {
+    std::vector<RelativeFactor> factors(links_.size());
+    parallel_blocks(links_.size(), threads_, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t l = begin; l < end; ++l) factors[l] = factor(*links_[l], radius);
+    });
+    PoseEquations equations(centres_, is_free_);
+    for (const RelativeFactor& one : factors) equations.add(one);
+    return equations;
+  }
+
+  RelativeFactor factor(const NetworkLink& link, double radius) {
+    SharedSurface &source = *surfaces_[link.source], &target = *surfaces_[link.target];
+    const Transformation pose = poses_[link.target].inverse() * poses_[link.source];
+    const Linearisation at_pose = linearise_at(source.surface(), target.surface(), pose, radius, max_points);
+    RelativeFactor result{link.source, link.target, pose, at_pose.centre, Matrix6::Zero(), Vector6::Zero()};
+    if (at_pose.pairs >= min_pairs && at_pose.residual_variance > 0) {
+      result.information = at_pose.hessian / at_pose.residual_variance;
+      result.gradient = at_pose.gradient / at_pose.residual_variance;
+    }
+    result.information.diagonal().head<3>().array() += source.squared_size() / (damping * damping);
+    result.information.diagonal().tail<3>().array() += 1 / (damping * damping);
+    return result;
+  }
+
+  void write_back(const std::vector<Matrix6>& covariances) {
+    const double v = network_.voxel_size;
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      if (!is_free_[i]) continue;
+      NetworkScan& scan = network_.scans[i];
+      scan.world_from_scan.linear() = poses_[i].linear();
+      scan.world_from_scan.translation() = v * poses_[i].translation() - poses_[i].linear() * features_[i]->origin;
+      scan.centre = v * (poses_[i] * centres_[i]);
+      Matrix6 turn = Matrix6::Zero();
+      turn.topLeftCorner<3, 3>() = poses_[i].linear();
+      turn.bottomRightCorner<3, 3>() = v * poses_[i].linear();
+      scan.covariance = turn * covariances[i] * turn.transpose();
+    }
+  }
+
+  Network& network_;
+  std::span<const Features* const> features_;
+  int threads_;
+  std::vector<const NetworkLink*> links_;
+  std::vector<Transformation> poses_;
+  std::vector<bool> is_free_;
+  std::vector<std::unique_ptr<SharedSurface>> surfaces_;
+  std::vector<Eigen::Vector3d> centres_;
+};
+
+}  // namespace
+
+void refine_jointly(Network& network, std::span<const Features* const> features, const Options& options) {
+  Bundle(network, features, options).run();
+}
+
+}  // namespace igsp

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "network/small_motion.hpp"
+
+namespace igsp {
+
+/// What holds two scans together, as a quadratic in the small step about `centre`, in the target's frame, that moves
+/// the source: step^T information step / 2 + gradient^T step.
+struct RelativeFactor {
+  std::size_t source = 0, target = 0;
+  Transformation target_from_source = Transformation::Identity();  ///< where the quadratic was taken
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Matrix6 information = Matrix6::Zero();
+  Vector6 gradient = Vector6::Zero();
+};
+
+/// Normal equations of the poses of many scans: a step of each about its own centre, in its own frame. Scans outside
+/// `is_free` stay where they are.
+class PoseEquations {
+ public:
+  PoseEquations(std::span<const Eigen::Vector3d> centres, const std::vector<bool>& is_free);
+
+  void add(const RelativeFactor& factor);
+
+  /// One step per scan, 0 for those that stay; nothing where the equations do not determine them.
+  std::optional<std::vector<Vector6>> solve() const;
+
+  /// Of every scan's step, 0 for those that stay or where the equations do not determine them.
+  std::vector<Matrix6> covariances() const;
+
+ private:
+  static constexpr std::size_t stays = SIZE_MAX;
+  Eigen::SparseMatrix<double> information() const;
+
+  std::span<const Eigen::Vector3d> centres_;
+  std::vector<std::size_t> unknown_;  // place among the unknowns
+  std::size_t unknowns_ = 0;
+  std::vector<Eigen::Triplet<double>> entries_;
+  Eigen::VectorXd gradient_;
+};
+
+/// Moves every scan by its step; returns the largest component of a step.
+double apply_steps(std::span<const Vector6> steps, std::span<const Eigen::Vector3d> centres,
+                   std::vector<Transformation>& world_from_scan);
+
+}  // namespace igsp
