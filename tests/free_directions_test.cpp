@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Motions = std::vector<Vector6>;  // (rotation, translation), as FreeDirection has them
 
-constexpr double same_direction = 0.95;  // cosine
+constexpr double same_direction = 0.93;  // cosine
 
 /// A scan pair, and where the scene's origin and axes are in the target's frame.
 struct Scene {

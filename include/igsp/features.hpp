@@ -33,6 +33,7 @@ struct Features {
   std::vector<Eigen::Matrix3d> frames;   ///< per keypoint: columns x, y, n of the local reference frame
   std::vector<Descriptor> descriptors;   ///< per keypoint, in its frame
   std::size_t cloud_points = 0;          ///< of the cloud as given
+  StrayPoints stray;                     ///< of them, those that were left out
   std::vector<std::pair<std::string, double>> timings_s;  ///< per stage, wall seconds, in order
 };
 

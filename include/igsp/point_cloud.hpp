@@ -27,6 +27,14 @@ struct Scan {
   std::optional<Eigen::Vector3d> viewpoint;
 };
 
+/// Few points far from all others: a row of zeros in survey coordinates, a -9999 for "nothing measured", a bird. One of
+/// them would set the extent, and with it scale, centre and levers, so they are left out: at most 2 % of the points,
+/// beyond a gap of at least half the extent that the others have along an axis.
+struct StrayPoints {
+  std::size_t count = 0;
+  double extents_away = 0;  ///< the farthest one's distance to the box of the others, in diagonals of that box
+};
+
 /// Hands out a cloud in pieces: every call returns the next chunk, an empty one at the end. A chunk is valid until the
 /// next call. Lets the voxel filter run over clouds that do not fit in memory.
 using ChunkSource = std::function<PointView()>;

@@ -50,6 +50,7 @@ struct CloudSummary {
   std::size_t points = 0;  ///< as given
   std::size_t voxels = 0;  ///< after the voxel filter
   std::size_t keypoints = 0;
+  StrayPoints stray;                         ///< of the points as given, those that were left out
   std::optional<Eigen::Vector3d> viewpoint;  ///< where the scanner stood, as given
 };
 

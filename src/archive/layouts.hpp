@@ -24,6 +24,15 @@ template <typename Class>
 struct Layout {};
 
 template <>
+struct Layout<StrayPoints> {
+  static constexpr std::string_view name = "StrayPoints";
+  static constexpr std::tuple fields = {
+      Field{"count", &StrayPoints::count},
+      Field{"extents_away", &StrayPoints::extents_away},
+  };
+};
+
+template <>
 struct Layout<Features> {
   static constexpr std::string_view name = "Features";
   static constexpr std::tuple fields = {
@@ -38,6 +47,7 @@ struct Layout<Features> {
       Field{"frames", &Features::frames},
       Field{"descriptors", &Features::descriptors},
       Field{"cloud_points", &Features::cloud_points},
+      Field{"stray", &Features::stray},
       Field{"timings_s", &Features::timings_s},
   };
 };
@@ -77,6 +87,7 @@ struct Layout<CloudSummary> {
       Field{"points", &CloudSummary::points},
       Field{"voxels", &CloudSummary::voxels},
       Field{"keypoints", &CloudSummary::keypoints},
+      Field{"stray", &CloudSummary::stray},
       Field{"viewpoint", &CloudSummary::viewpoint},
   };
 };
@@ -205,8 +216,9 @@ struct Layout<SimulatedScan> {
 };
 
 using AllStructs =
-    std::tuple<Features, KeypointMatch, IterationRecord, CloudSummary, FreeDirection, Precision, FreeSpaceViolation,
-               FreeSpace, Evidence, RunnerUp, Result, Diagnosis, PoseError, MatchQuality, SimulatedScan>;
+    std::tuple<StrayPoints, Features, KeypointMatch, IterationRecord, CloudSummary, FreeDirection, Precision,
+               FreeSpaceViolation, FreeSpace, Evidence, RunnerUp, Result, Diagnosis, PoseError, MatchQuality,
+               SimulatedScan>;
 
 template <typename T>
 concept HasLayout = requires {

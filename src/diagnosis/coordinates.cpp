@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "spatial/scale.hpp"
+#include "spatial/bounds.hpp"
 
 namespace igsp {
 namespace {

@@ -5,6 +5,7 @@
 #include "core/parallel.hpp"
 #include "core/stage_clock.hpp"
 #include "features/bsc.hpp"
+#include "features/extraction.hpp"
 #include "features/keypoints.hpp"
 #include "features/reference_frame.hpp"
 #include "features/scale_lengths.hpp"
@@ -18,12 +19,6 @@ namespace igsp {
 namespace {
 
 constexpr double fine_voxels = 0.5;  // voxels: finer ones brought no accuracy on scans whose truth is known
-
-void require_finite(const std::optional<Eigen::Vector3d>& viewpoint) {
-  if (!viewpoint || viewpoint->allFinite()) return;
-  throw InvalidArgument(fmt::format("viewpoint = {},{},{} is not finite; three finite coordinates are needed",
-                                    viewpoint->x(), viewpoint->y(), viewpoint->z()));
-}
 
 void describe_keypoints(const PointGrid& grid, const Options& options, const StageClock& clock, Features& features) {
   const double radius = options.descriptor.radius * features.voxel_size;
@@ -43,30 +38,43 @@ void describe_keypoints(const PointGrid& grid, const Options& options, const Sta
 }
 
 // Where single precision is at home, and back.
-Features extract_in_unit(double unit, const Scan& scan, Options options, const ProgressCallback& progress) {
+Features extract_in_unit(double unit, const TrimmedCloud& cloud, const std::optional<Eigen::Vector3d>& viewpoint,
+                         Options options, const ProgressCallback& progress) {
   options.scale.voxel_size /= unit;
-  Features features = extract_features({in_unit(scan.points, unit), in_unit(scan.viewpoint, unit)}, options, progress);
+  Features features = extract_features(cloud.in_unit(unit), in_unit(viewpoint, unit), options, progress);
   scale_lengths(features, unit);
   return features;
 }
 
 }  // namespace
 
+void require_finite(const std::optional<Eigen::Vector3d>& viewpoint) {
+  if (!viewpoint || viewpoint->allFinite()) return;
+  throw InvalidArgument(fmt::format("viewpoint = {},{},{} is not finite; three finite coordinates are needed",
+                                    viewpoint->x(), viewpoint->y(), viewpoint->z()));
+}
+
 Features extract_features(const Scan& scan, const Options& options, const ProgressCallback& progress) {
   validate(options);
   require_finite(scan.viewpoint);
-  PointView cloud = scan.points;
+  return extract_features(TrimmedCloud(scan.points, "cloud"), scan.viewpoint, options, progress);
+}
+
+Features extract_features(const TrimmedCloud& trimmed, const std::optional<Eigen::Vector3d>& viewpoint,
+                          const Options& options, const ProgressCallback& progress) {
+  const Bounds& bounds = trimmed.bounds();
+  if (const double unit = unit_of_length(bounds, bounds, options.scale.voxel_size); unit != 1) {
+    return extract_in_unit(unit, trimmed, viewpoint, options, progress);
+  }
+  PointView cloud = trimmed.points();
   StageClock clock(progress);
   Features features;
-  features.cloud_points = cloud.size();
+  features.cloud_points = cloud.size() + trimmed.stray().count;
+  features.stray = trimmed.stray();
   clock.start("voxel grid");
-  const Bounds bounds = bounds_of(cloud, "cloud");
-  if (const double unit = unit_of_length(bounds, bounds, options.scale.voxel_size); unit != 1) {
-    return extract_in_unit(unit, scan, options, progress);
-  }
-  features.voxel_size = choose_voxel_size(cloud, cloud, options.scale);
+  features.voxel_size = choose_voxel_size(trimmed, trimmed, options.scale);
   features.origin = centre_of(bounds);
-  if (scan.viewpoint) features.viewpoint = *scan.viewpoint - features.origin;
+  if (viewpoint) features.viewpoint = *viewpoint - features.origin;
   const ScatterFilter filter(cloud, bounds, scatter_density(cloud, bounds), scatter_cell * features.voxel_size);
   const Points kept = filter.keeps_all() ? Points() : without_scatter(cloud, filter);
   if (!filter.keeps_all()) cloud = kept;

@@ -5,7 +5,7 @@ namespace igsp {
 void scale_lengths(Features& features, double factor) {
   // All fields by name: one that is added to the struct does not build until someone has asked whether it is a length.
   auto& [origin, viewpoint, voxel_size, points, curvature, normals, fine_points, keypoints, frames, descriptors,
-         cloud_points, timings_s] = features;
+         cloud_points, stray, timings_s] = features;
   origin *= factor;
   if (viewpoint) *viewpoint *= factor;
   voxel_size *= factor;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "features/extraction.hpp"
 #include "registration/pose_assessment.hpp"
 #include "registration/scale_lengths.hpp"
 #include "registration/search.hpp"
@@ -38,7 +39,7 @@ Points keypoints_in_world(const Features& features) {
 CloudSummary summary_of(const Features& features) {
   std::optional<Eigen::Vector3d> viewpoint = features.viewpoint;
   if (viewpoint) *viewpoint += features.origin;
-  return {features.cloud_points, features.points.size(), features.keypoints.size(), viewpoint};
+  return {features.cloud_points, features.points.size(), features.keypoints.size(), features.stray, viewpoint};
 }
 
 void check_compatible(const Features& source, const Features& target) {
@@ -74,11 +75,11 @@ std::string_view to_string(Termination termination) {
 namespace {
 
 // No scale can be chosen, nor is anything there to register: an answer, not the caller's mistake.
-Result without_extent(const Scan& source, const Scan& target, const Options& options) {
+Result without_extent(const TrimmedCloud& source, const TrimmedCloud& target, const Options& options) {
   Result result;
   result.options = options;
-  result.source.points = source.points.size();
-  result.target.points = target.points.size();
+  result.source.points = source.points().size();
+  result.target.points = target.points().size();
   result.termination = Termination::too_few_keypoints;
   result.reason = "all points coincide in both clouds: there is nothing to register";
   return result;
@@ -121,19 +122,23 @@ Result align_features(const Features& source, const Features& target, const Tran
   return result;
 }
 
-Result align_points(const Scan& source, const Scan& target, const Transformation* initial, const Options& options,
-                    const ProgressCallback& progress) {
-  validate(options);
-  const double extent =
-      std::max(bounds_of(source.points, "source").diagonal(), bounds_of(target.points, "target").diagonal());
-  if (extent == 0 && options.scale.voxel_size == 0) return without_extent(source, target, options);
+// A scan without its stray points.
+struct TrimmedScan {
+  TrimmedCloud cloud;
+  std::optional<Eigen::Vector3d> viewpoint;
+};
+
+Result align_points(const TrimmedScan& source, const TrimmedScan& target, const Transformation* initial,
+                    const Options& options, const ProgressCallback& progress) {
+  const double extent = std::max(source.cloud.bounds().diagonal(), target.cloud.bounds().diagonal());
+  if (extent == 0 && options.scale.voxel_size == 0) return without_extent(source.cloud, target.cloud, options);
   StageClock clock(progress);
   clock.start("scale");
   Options scaled = options;
-  scaled.scale.voxel_size = choose_voxel_size(source.points, target.points, options.scale);
+  scaled.scale.voxel_size = choose_voxel_size(source.cloud, target.cloud, options.scale);
   clock.finish();
-  const Features source_features = extract_features(source, scaled, progress);
-  const Features target_features = extract_features(target, scaled, progress);
+  const Features source_features = extract_features(source.cloud, source.viewpoint, scaled, progress);
+  const Features target_features = extract_features(target.cloud, target.viewpoint, scaled, progress);
   Result result = align_features(source_features, target_features, initial, scaled, progress);
   result.timings_s.insert(result.timings_s.begin(), clock.timings().begin(), clock.timings().end());
   return result;
@@ -159,14 +164,16 @@ Options options_in_unit(Options options, double unit) {
 Result align_scans(const Scan& source, const Scan& target, const Transformation* initial, const Options& options,
                    const ProgressCallback& progress) {
   validate(options);
-  const double unit =
-      unit_of_length(bounds_of(source.points, "source"), bounds_of(target.points, "target"), options.scale.voxel_size);
-  if (unit == 1) return align_points(source, target, initial, options, progress);
-  const Points source_points = in_unit(source.points, unit), target_points = in_unit(target.points, unit);
+  require_finite(source.viewpoint);
+  require_finite(target.viewpoint);
+  const TrimmedScan moving{TrimmedCloud(source.points, "source"), source.viewpoint};
+  const TrimmedScan fixed{TrimmedCloud(target.points, "target"), target.viewpoint};
+  const double unit = unit_of_length(moving.cloud.bounds(), fixed.cloud.bounds(), options.scale.voxel_size);
+  if (unit == 1) return align_points(moving, fixed, initial, options, progress);
   const auto guess = guess_in_unit(initial, unit);
-  Result result =
-      align_points({source_points, in_unit(source.viewpoint, unit)}, {target_points, in_unit(target.viewpoint, unit)},
-                   guess ? &*guess : nullptr, options_in_unit(options, unit), progress);
+  Result result = align_points({moving.cloud.in_unit(unit), in_unit(moving.viewpoint, unit)},
+                               {fixed.cloud.in_unit(unit), in_unit(fixed.viewpoint, unit)}, guess ? &*guess : nullptr,
+                               options_in_unit(options, unit), progress);
   scale_lengths(result, unit);
   return result;
 }

@@ -22,6 +22,7 @@ struct NormalEquations {
   Vector6 gradient = Vector6::Zero();
   std::size_t pairs = 0;
   double weight_sum = 0, weighted_squares = 0;
+  Eigen::Vector3d weighted_places = Eigen::Vector3d::Zero();
 
   // p and its normal as moved by the current pose, q and its normal of the target.
   void add(const Eigen::Vector3d& p, const Eigen::Vector3d& p_normal, const Eigen::Vector3d& q,
@@ -36,8 +37,21 @@ struct NormalEquations {
     information += weight * jacobian * jacobian.transpose();
     gradient += weight * residual * jacobian;
     weight_sum += weight;
+    weighted_places += weight * p;
     weighted_squares += weight * residual * residual;
     ++pairs;
+  }
+
+  // Rotations about the centroid of the pairs, which does not depend on where the cloud's other points are:
+  // (p - c') x n = (p - c) x n - (c' - c) x n, so J' = T J.
+  void move_centre_to_pairs() {
+    if (!(weight_sum > 0)) return;
+    const Eigen::Vector3d centroid = weighted_places / weight_sum, shift = centroid - centre;
+    Matrix6 moved = Matrix6::Identity();
+    moved.topRightCorner<3, 3>() << 0, shift.z(), -shift.y(), -shift.z(), 0, shift.x(), shift.y(), -shift.x(), 0;
+    information = moved * information * moved.transpose();
+    gradient = moved * gradient;
+    centre = centroid;
   }
 };
 
@@ -50,6 +64,7 @@ NormalEquations linearise(Surface& source, Surface& target, const Transformation
     const std::int64_t j = target.grid().nearest(p.cast<float>(), static_cast<float>(radius));
     if (j >= 0) equations.add(p, pose.linear() * source.normal(i), target.point(j), target.normal(j));
   }
+  equations.move_centre_to_pairs();
   return equations;
 }
 

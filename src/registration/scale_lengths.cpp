@@ -18,7 +18,7 @@ void scale(IterationRecord& record, double factor) {
 }
 
 void scale(CloudSummary& summary, double factor) {
-  auto& [points, voxels, keypoints, viewpoint] = summary;
+  auto& [points, voxels, keypoints, stray, viewpoint] = summary;
   if (viewpoint) *viewpoint *= factor;
 }
 

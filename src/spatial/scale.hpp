@@ -1,26 +1,18 @@
 #pragma once
 
 #include "igsp/options.hpp"
-#include "igsp/point_cloud.hpp"
+#include "spatial/trimmed_cloud.hpp"
 
 namespace igsp {
 
-struct Bounds {
-  Eigen::Vector3d min;
-  Eigen::Vector3d max;
-  double diagonal() const { return (max - min).norm(); }
-};
-
-/// Throws InvalidArgument naming `name` for an empty cloud or a non-finite point.
-Bounds bounds_of(PointView cloud, std::string_view name);
-
-/// The origin that a cloud's coordinates are taken relative to. It is a corner plus half an extent, so that it moves
-/// exactly with the cloud: a pair in survey coordinates gives the same differences, hence the same result.
-Eigen::Vector3d centre_of(const Bounds& bounds);
-
 /// One voxel size for both clouds: the geometric mean of their voxel counts comes to options.target_points, yet no
-/// cloud is cut finer than its own spacing (at least 10 points to 6 voxels, about). Returns options.voxel_size if it is
-/// set. Scales with the unit of length. Throws InvalidArgument when all points of both clouds coincide.
+/// cloud is cut finer than its own spacing (at least 10 points to 6 voxels, about), nor so fine that on
+/// average more than 60 % of the voxels hold a single point, as those far from a scanner do: they show no surface.
+/// Returns options.voxel_size if it is set. Scales with the unit of length. Throws InvalidArgument when all points of
+/// both clouds coincide.
+double choose_voxel_size(const TrimmedCloud& source, const TrimmedCloud& target, const ScaleOptions& options);
+
+/// The same for clouds as they are; their stray points are left out.
 double choose_voxel_size(PointView source, PointView target, const ScaleOptions& options);
 
 }  // namespace igsp

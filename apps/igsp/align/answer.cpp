@@ -28,7 +28,10 @@ std::string timing_table(const Result& result) {
 }
 
 std::string cloud_line(std::string_view name, const CloudSummary& cloud) {
-  return fmt::format("{:<11} {} points, {} voxels, {} keypoints\n", name, cloud.points, cloud.voxels, cloud.keypoints);
+  std::string text =
+      fmt::format("{:<11} {} points, {} voxels, {} keypoints\n", name, cloud.points, cloud.voxels, cloud.keypoints);
+  if (cloud.stray.count > 0) text += fmt::format("{:<11} {}\n", "", stray_text(cloud));
+  return text;
 }
 
 }  // namespace
@@ -47,8 +50,18 @@ std::string matrix_text(const Transformation& transformation) {
   return fmt::format("{}\n", fmt::join(lines, "\n"));
 }
 
+<<<<<<< HEAD
 std::string answer_text(const Result& result, const std::vector<Diagnosis>& diagnosis, bool voxel_size_given,
                         double seconds) {
+=======
+std::string stray_text(const CloudSummary& cloud) {
+  const bool one = cloud.stray.count == 1;
+  return fmt::format("{} of {} points {} {:.1f} extents away and {} left out", cloud.stray.count, cloud.points,
+                     one ? "lies" : "lie up to", cloud.stray.extents_away, one ? "was" : "were");
+}
+
+std::string answer_text(const Result& result, bool voxel_size_given, double seconds) {
+>>>>>>> main
   std::string text = fmt::format("{}: {}\n", result.registered ? "registered" : "not registered", result.reason);
   for (const Diagnosis& cause : diagnosis) text += fmt::format("diagnosis: {}\n", cause.description);
   if (result.has_estimate) {

@@ -16,6 +16,9 @@ std::string matrix_text(const Transformation& transformation);
 std::string answer_text(const Result& result, const std::vector<Diagnosis>& diagnosis, bool voxel_size_given,
                         double seconds);
 
+/// Such as "1 of 8254 points lies 2.3 extents away and was left out".
+std::string stray_text(const CloudSummary& cloud);
+
 /// What `--verbose` adds: a line per iteration and per stage.
 std::string details_text(const Result& result);
 

@@ -90,11 +90,15 @@ std::vector<std::string> warnings_about(const CloudInput& source, const CloudInp
                                    cloud->path.string(), cloud->dropped, cloud->dropped + cloud->total));
   }
   constexpr double suspicious = 100.0;
-  const double power = std::log10(source.bounds.diagonal() / target.bounds.diagonal());
+  const auto extent_of = [](const CloudInput& cloud) {
+    return TrimmedCloud(cloud.points, cloud.path.string()).bounds().diagonal();
+  };
+  const double source_extent = extent_of(source), target_extent = extent_of(target);
+  const double power = std::log10(source_extent / target_extent);
   if (std::abs(power) >= std::log10(suspicious)) {
     warnings.push_back(
         fmt::format("clouds in different units? Extents differ by a factor of about {:g}: source {:.4g}, target {:.4g}",
-                    std::pow(10.0, std::round(std::abs(power))), source.bounds.diagonal(), target.bounds.diagonal()));
+                    std::pow(10.0, std::round(std::abs(power))), source_extent, target_extent));
   }
   return warnings;
 }

@@ -8,6 +8,7 @@
 #include "files/cloud_file.hpp"
 #include "files/point_sample.hpp"
 #include "igsp/errors.hpp"
+#include "spatial/trimmed_cloud.hpp"
 #include "spatial/voxel_grid.hpp"
 
 namespace igsp::cli {
@@ -17,6 +18,8 @@ void report(const ProgressCallback& progress, std::string_view stage, std::size_
   const double fraction = all > 0 ? std::min(1.0, static_cast<double>(done) / static_cast<double>(all)) : 0.0;
   if (progress && !progress({stage, fraction})) throw Cancelled();
 }
+
+constexpr double max_voxels_away = 1 << 18;
 
 void check_extent(const CloudInput& cloud) {
   const auto fail = [&](const std::string& why) {
@@ -58,17 +61,28 @@ CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points,
 Points read_centroids(const CloudInput& cloud, double voxel_size, std::string_view stage,
                       const ProgressCallback& progress) {
   CloudFile reader(cloud.path, cloud.options);
-  const Eigen::Vector3d origin = centre_of(cloud.bounds);
+  const TrimmedCloud kept(cloud.points, cloud.path.string());
+  const Eigen::Vector3d origin = centre_of(kept.bounds());
+  // Farther than a voxel filter can hold lie stray points alone: they stay as they are, so that `align` tells of them.
+  const double reach = (kept.bounds().max - kept.bounds().min).maxCoeff() + max_voxels_away * voxel_size;
+  Points near, far;
   std::size_t read = 0;
   Points centroids = voxel_centroids(
       [&] {
         report(progress, stage, read, cloud.total);
-        const PointView chunk = reader.next_chunk();
-        read += chunk.size();
-        return chunk;
+        near.clear();
+        for (PointView chunk = reader.next_chunk(); near.empty() && !chunk.empty();) {
+          read += chunk.size();
+          for (const Eigen::Vector3d& point : chunk) {
+            ((point - origin).cwiseAbs().maxCoeff() < reach ? near : far).push_back(point);
+          }
+          if (near.empty()) chunk = reader.next_chunk();
+        }
+        return PointView(near);
       },
       origin, voxel_size);
   for (Eigen::Vector3d& centroid : centroids) centroid += origin;
+  centroids.insert(centroids.end(), far.begin(), far.end());
   return centroids;
 }
 

@@ -15,8 +15,14 @@ Json to_json(const OptionValue& value) {
 }
 
 Json to_json(const CloudInput& input, const CloudSummary& summary) {
-  return {{"path", input.path.string()}, {"points", input.total},    {"dropped_points", input.dropped},
-          {"streamed", !input.whole()},  {"voxels", summary.voxels}, {"keypoints", summary.keypoints}};
+  return {{"path", input.path.string()},
+          {"points", input.total},
+          {"dropped_points", input.dropped},
+          {"streamed", !input.whole()},
+          {"voxels", summary.voxels},
+          {"keypoints", summary.keypoints},
+          {"stray_points", summary.stray.count},
+          {"stray_extents_away", summary.stray.extents_away}};
 }
 
 Json to_json(const std::vector<KeypointMatch>& matches) {

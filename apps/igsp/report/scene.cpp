@@ -22,13 +22,14 @@ constexpr std::uint8_t out_of_reach = 255;
 struct LocalCloud {
   Points points;  // relative to the origin
   Eigen::Vector3d origin;
-  Bounds bounds;  // of the points
+  Bounds bounds;  // of the points that are drawn
 };
 
 LocalCloud localised(PointView cloud, std::string_view name) {
   LocalCloud local;
-  local.origin = centre_of(bounds_of(cloud, name));
-  local.points.assign(cloud.begin(), cloud.end());
+  const TrimmedCloud trimmed(cloud, name);
+  local.origin = centre_of(trimmed.bounds());
+  local.points.assign(trimmed.points().begin(), trimmed.points().end());
   for (Eigen::Vector3d& point : local.points) point -= local.origin;
   local.bounds = bounds_of(local.points, name);
   return local;
