@@ -120,7 +120,7 @@ TEST(Diagnosis, DecimalStepsAreNamed) {
 
 TEST(Diagnosis, FewPointsAreNamed) {
   Points few;
-  for (std::size_t i = 0; i < room().source.size(); i += 100) few.push_back(room().source[i]);
+  for (std::size_t i = 0; i < room().source.size(); i += 1000) few.push_back(room().source[i]);
   const auto causes = causes_of_refusal(few, room().target);
   ASSERT_ONLY_CAUSE(causes, Cause::too_few_points);
   EXPECT_SAYS(causes, "few points in the source: 4");

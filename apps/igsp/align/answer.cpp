@@ -50,18 +50,14 @@ std::string matrix_text(const Transformation& transformation) {
   return fmt::format("{}\n", fmt::join(lines, "\n"));
 }
 
-<<<<<<< HEAD
-std::string answer_text(const Result& result, const std::vector<Diagnosis>& diagnosis, bool voxel_size_given,
-                        double seconds) {
-=======
 std::string stray_text(const CloudSummary& cloud) {
   const bool one = cloud.stray.count == 1;
   return fmt::format("{} of {} points {} {:.1f} extents away and {} left out", cloud.stray.count, cloud.points,
                      one ? "lies" : "lie up to", cloud.stray.extents_away, one ? "was" : "were");
 }
 
-std::string answer_text(const Result& result, bool voxel_size_given, double seconds) {
->>>>>>> main
+std::string answer_text(const Result& result, const std::vector<Diagnosis>& diagnosis, bool voxel_size_given,
+                        double seconds) {
   std::string text = fmt::format("{}: {}\n", result.registered ? "registered" : "not registered", result.reason);
   for (const Diagnosis& cause : diagnosis) text += fmt::format("diagnosis: {}\n", cause.description);
   if (result.has_estimate) {
