@@ -52,6 +52,9 @@ class CommandTest(unittest.TestCase):
 
     def igsp(self, *arguments, code=0):
         run = subprocess.run([IGSP, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder)
+        if code is None:
+            self.assertIn(run.returncode, [0, 1])
+            return run
         self.assertEqual(run.returncode, code, f"igsp {arguments}\n{run.stdout}\n{run.stderr}")
         return run
 
@@ -151,6 +154,44 @@ class Align(CommandTest):
         self.assertIn("read", report["timings_s"])
         self.assertEqual(report["options"]["degrees_of_freedom"], 6)
         self.assertIn("pca_radius", report["options"]["keypoints"])
+
+    def test_viewpoints_are_kept_and_what_they_saw_through_is_measured(self):
+        run = self.igsp("align", self.source, self.target, "--source-viewpoint=0,0,0", "--target-viewpoint=0,0,0",
+                        "--report", "r.json")
+        self.assertIn("in space that the other scanner saw through", run.stdout)
+        report = json.loads((self.folder / "r.json").read_text())
+        for cloud in ["source", "target"]:
+            self.assertEqual(report[cloud]["viewpoint"], [0, 0, 0])
+            self.assertEqual(report[cloud]["viewpoint_because"], "given")
+            self.assertGreater(report["evidence"]["free_space"][cloud]["in_view"], 100)
+        self.assertLess(report["evidence"]["free_space"]["violation"], 0.03)
+        self.assertEqual(report["warnings"], [])
+
+    def test_half_known_pairs_use_the_half_they_have(self):
+        run = self.igsp("align", self.source, self.target, "--target-viewpoint=0,0,0", "--source-viewpoint=none",
+                        "--report", "r.json")
+        self.assertIn("% of the source in space", run.stdout)
+        self.assertNotIn("% of the target", run.stdout)
+        report = json.loads((self.folder / "r.json").read_text())
+        self.assertIsNone(report["source"]["viewpoint"])
+        self.assertIsNone(report["evidence"]["free_space"]["target"])
+
+    def test_a_viewpoint_that_its_cloud_contradicts_is_not_used_unless_insisted_on(self):
+        rng = np.random.default_rng(1)
+        walls = rng.uniform(-1, 1, (50000, 3))
+        walls[np.arange(50000), rng.integers(0, 3, 50000)] = rng.choice([-1, 1], 50000)
+        room = self.cloud("room.ply", walls * [5, 4, 2])
+        behind = "-5.5,0,0"
+        run = self.igsp("align", room, room, f"--source-viewpoint={behind}", "--report", "r.json", code=None)
+        self.assertRegex(run.stderr, rf"room.ply: --source-viewpoint={behind} is not used: \d\d % of the points are "
+                                     rf"hidden .*; --source-viewpoint={behind}! insists")
+        report = json.loads((self.folder / "r.json").read_text())
+        self.assertIsNone(report["source"]["viewpoint"])
+        self.assertEqual(len(report["warnings"]), 1)
+        run = self.igsp("align", room, room, f"--source-viewpoint={behind}!", "--report", "r.json", code=None)
+        self.assertNotIn("not used", run.stderr)
+        report = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual(report["source"]["viewpoint"], [-5.5, 0, 0])
 
     def test_survey_coordinates_are_written_as_doubles(self):
         offset = np.array([500000.0, 5000000.0, 300.0])
@@ -295,6 +336,9 @@ class OptionsOfTheCommand(CommandTest):
             (["--threads"], "--threads"),
             (["--max-points", "5"], "at least 1000"),
             (["extra.ply"], "extra.ply"),
+            (["--source-viewpoint=1,2"], ["--source-viewpoint is '1,2'", "x,y,z"]),
+            (["--target-viewpoint=1,nan,2"], "--target-viewpoint is '1,nan,2'"),
+            (["--target-viewpoint", "origin"], "--target-viewpoint is 'origin'"),
             (["--quiet", "--verbose"], "--verbose"),
         ]:
             with self.subTest(arguments):

@@ -101,6 +101,47 @@ class NetworkCommand(unittest.TestCase):
         self.assertEqual([row["component"] for row in poses], ["0", "0", "1", "2", "0", "0"])
         self.check_poses(poses[:2] + poses[4:])
 
+    def kept(self, kind):
+        return {path.name: path.stat().st_mtime_ns for path in (self.folder / "survey/cache" / kind).iterdir()}
+
+    def outputs(self, folder="survey"):
+        return {path.name: path.read_bytes() for path in (self.folder / folder).iterdir() if path.is_file()}
+
+    def test_goes_on_where_an_earlier_run_stopped(self):
+        self.network(*self.scans, "-o", "survey")
+        whole, features, pairs = self.outputs(), self.kept("features"), self.kept("pairs")
+        self.assertEqual((len(features), len(pairs)), (4, 6))
+        for name in sorted(pairs)[:3]:
+            (self.folder / "survey/cache/pairs" / name).unlink()
+        damaged = self.folder / "survey/cache/features" / sorted(features)[0]
+        damaged.write_bytes(damaged.read_bytes()[:1000])
+        self.network(*self.scans, "-o", "survey")
+        self.assertEqual(self.outputs(), whole)
+        again = self.kept("pairs")
+        self.assertEqual(sum(again[name] == pairs[name] for name in pairs), 3)
+        self.assertEqual(sum(self.kept("features")[name] == features[name] for name in features), 3)
+
+    def test_scan_added_later_is_only_paired_with_the_others(self):
+        self.network(*self.scans[:3], "-o", "survey")
+        before = self.kept("pairs")
+        self.network(*self.scans, "-o", "survey")
+        after = self.kept("pairs")
+        self.assertEqual(len(after), len(before) + 3)
+        self.assertEqual({name: after[name] for name in before}, before)
+        self.check_poses(self.rows("poses.csv"))
+
+    def test_changed_file_is_noticed(self):
+        copies = []
+        for i in range(2):
+            copies.append(self.folder / f"copy_{i}.ply")
+            copies[i].write_bytes(self.scans[i].read_bytes())
+        self.network(*copies, "-o", "survey")
+        copies[1].write_bytes(self.scans[2].read_bytes())
+        self.network(*copies, "-o", "survey")
+        self.assertEqual(len(self.kept("features")), 3)
+        truth = np.loadtxt(self.site / "station_2_to_0.txt")
+        self.assertLess(np.abs(pose_of(self.rows("poses.csv")[1]) - truth).max(), 0.1)
+
     def test_folder_and_viewpoints(self):
         (self.folder / "viewpoints.csv").write_text("scan,x,y,z\nstation_1.ply,0,0,0\nstation_0,0,0,0\n")
         self.network(self.site, "-o", "survey", "--viewpoints", "viewpoints.csv")

@@ -9,3 +9,4 @@
 #include "igsp/network.hpp"
 #include "igsp/simulation.hpp"
 #include "igsp/version.hpp"
+#include "igsp/viewpoint.hpp"

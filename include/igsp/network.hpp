@@ -74,6 +74,13 @@ struct Network {
 /// becomes that scan's problem and does not stop the others.
 using FeatureSource = std::function<Features(std::size_t scan)>;
 
+/// Keeps what a run has finished, so that a later one goes on from there. Both may be called from several threads at
+/// once; what they throw ends the run. Empty: nothing is kept.
+struct PairStore {
+  std::function<std::optional<Result>(std::size_t source, std::size_t target)> find;
+  std::function<void(std::size_t source, std::size_t target, const Result& result)> keep;
+};
+
 /// Many scans into one frame, without initial poses: all pairs are registered; links that loops contradict are left
 /// out; the rest is balanced in a robust pose graph. All features must share one voxel size. Throws InvalidArgument
 /// (option out of range, different voxel sizes), Cancelled; scans that cannot be placed are an answer.
@@ -82,7 +89,7 @@ Network register_network(std::span<const Features> scans, const NetworkOptions& 
 
 /// The same with features that are made, or read, one after the other.
 Network register_network(std::size_t scans, const FeatureSource& features, const NetworkOptions& options = {},
-                         const ProgressCallback& progress = {});
+                         const ProgressCallback& progress = {}, const PairStore& store = {});
 
 /// The easy door: from points, with one voxel size chosen for all scans.
 Network register_network(std::span<const Scan> scans, const NetworkOptions& options = {},

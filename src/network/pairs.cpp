@@ -23,6 +23,17 @@ NetworkLink link_of(const ScanPair& pair, const Result& result) {
   return link;
 }
 
+Result result_of(const ScanPair& pair, std::span<const Features* const> features, const Options& options,
+                 const PairStore& store) {
+  const auto [source, target] = pair;
+  if (store.find) {
+    if (std::optional<Result> found = store.find(source, target)) return std::move(*found);
+  }
+  Result result = align(*features[source], *features[target], options);
+  if (store.keep) store.keep(source, target, result);
+  return result;
+}
+
 }  // namespace
 
 std::vector<ScanPair> all_pairs(const std::vector<NetworkScan>& scans) {
@@ -36,7 +47,8 @@ std::vector<ScanPair> all_pairs(const std::vector<NetworkScan>& scans) {
 }
 
 std::vector<NetworkLink> register_pairs(std::span<const ScanPair> pairs, std::span<const Features* const> features,
-                                        const Options& options, const std::function<void(double)>& report) {
+                                        const Options& options, const PairStore& store,
+                                        const std::function<void(double)>& report) {
   Options single = options;
   single.threads = 1;
   std::vector<NetworkLink> links(pairs.size());
@@ -44,7 +56,7 @@ std::vector<NetworkLink> register_pairs(std::span<const ScanPair> pairs, std::sp
       pairs.size(), options.threads, 1, slice,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-          links[i] = link_of(pairs[i], align(*features[pairs[i].first], *features[pairs[i].second], single));
+          links[i] = link_of(pairs[i], result_of(pairs[i], features, single, store));
         }
       },
       report);

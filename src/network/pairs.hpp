@@ -15,8 +15,9 @@ using ScanPair = std::pair<std::size_t, std::size_t>;  ///< source, target
 std::vector<ScanPair> all_pairs(const std::vector<NetworkScan>& scans);
 
 /// Registers pairs, several at a time, each on one thread. `features` by scan; only those of the pairs are looked at.
-/// `report` gets the share done and may throw to stop.
+/// What the store has is taken from it, the rest is kept in it. `report` gets the share done and may throw to stop.
 std::vector<NetworkLink> register_pairs(std::span<const ScanPair> pairs, std::span<const Features* const> features,
-                                        const Options& options, const std::function<void(double)>& report);
+                                        const Options& options, const PairStore& store,
+                                        const std::function<void(double)>& report);
 
 }  // namespace igsp

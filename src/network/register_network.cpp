@@ -74,7 +74,7 @@ std::string_view to_string(LinkState state) {
 }
 
 Network register_network(std::size_t scans, const FeatureSource& features, const NetworkOptions& options,
-                         const ProgressCallback& progress) {
+                         const ProgressCallback& progress, const PairStore& store) {
   check(options);
   Gathered gathered = gather(scans, features, progress);
   Network network;
@@ -86,7 +86,7 @@ Network register_network(std::size_t scans, const FeatureSource& features, const
     views.push_back(&one);
     shapes.push_back(shape_of(one));
   }
-  network.links = register_pairs(all_pairs(network.scans), views, options.pair,
+  network.links = register_pairs(all_pairs(network.scans), views, options.pair, store,
                                  [&](double done) { report(progress, "pairs", done); });
   report(progress, "pairs", 1);
   decide(network, shapes, options);

@@ -43,11 +43,27 @@ std::string why_no_estimate(const Result& result) {
   }
 }
 
+std::string percent(double share) {
+  return share < 0.0995 ? fmt::format("{:.1f} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
+}
+
+// Of each scan, as far as the other one's scanner can tell.
+std::string seen_through(const FreeSpace& free_space) {
+  const auto part = [](const FreeSpaceViolation& violation, std::string_view cloud) {
+    return fmt::format("{} of the {}", percent(violation.share()), cloud);
+  };
+  std::string parts;
+  if (free_space.source) parts = part(*free_space.source, "source");
+  if (free_space.target) parts += (parts.empty() ? "" : " and ") + part(*free_space.target, "target");
+  return parts.empty() ? "" : "; " + parts + " in space that the other scanner saw through";
+}
+
 std::string in_words(const Result& result) {
   const Evidence& e = result.evidence;
   std::string text = fmt::format(
       "{} of {} mutual matches agree; overlap {:.2f}; surfaces touch at {:.0f} % of the places where they meet",
       e.agreeing_matches, e.mutual_matches, result.overlap(), 100 * e.contact_share);
+  text += seen_through(e.free_space);
   if (result.runner_up) text += fmt::format("; runner-up explains {:.0f} %", 100 * result.runner_up->share);
   return text;
 }

@@ -28,8 +28,12 @@ std::string timing_table(const Result& result) {
 }
 
 std::string cloud_line(std::string_view name, const CloudSummary& cloud) {
+  const auto coordinates = [](const Eigen::Vector3d& at) {
+    return fmt::format("{:.6g}", fmt::join(at.begin(), at.end(), ", "));
+  };
   std::string text =
-      fmt::format("{:<11} {} points, {} voxels, {} keypoints\n", name, cloud.points, cloud.voxels, cloud.keypoints);
+      fmt::format("{:<11} {} points, {} voxels, {} keypoints, scanner {}\n", name, cloud.points, cloud.voxels,
+                  cloud.keypoints, cloud.viewpoint ? "at " + coordinates(*cloud.viewpoint) : "unknown");
   if (cloud.stray.count > 0) text += fmt::format("{:<11} {}\n", "", stray_text(cloud));
   return text;
 }

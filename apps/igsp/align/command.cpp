@@ -35,6 +35,7 @@ struct AlignSettings {
   fs::path aligned, transformation, report, html;  // empty: not wanted
   fs::path initial;                                // empty: no guess
   ReadOptions read;
+  std::string source_viewpoint = "auto", target_viewpoint = "auto";
   std::int64_t max_points = 20'000'000;
   bool force = false, quiet = false, verbose = false, no_diagnose = false;
   std::shared_ptr<OptionFlags> option_flags;
@@ -80,6 +81,11 @@ void check_outputs(const AlignSettings& settings) {
     check_writable(path);
   }
   if (!settings.aligned.empty()) check_moved_output(settings.source, settings.aligned);
+}
+
+std::string contradicted(const CloudInput& cloud, std::string_view option, const std::string& text) {
+  return fmt::format("{}: {}={} is not used: {}; {}={}! insists", cloud.path.string(), option, text,
+                     cloud.viewpoint.warning, option, text);
 }
 
 std::vector<std::string> warnings_about(const CloudInput& source, const CloudInput& target) {
@@ -160,17 +166,27 @@ int run_align(const AlignSettings& settings) {
   }
   check_outputs(settings);
   std::optional<Transformation> initial;
+  const ViewpointRequest source_viewpoint = parse_viewpoint("--source-viewpoint", settings.source_viewpoint),
+                         target_viewpoint = parse_viewpoint("--target-viewpoint", settings.target_viewpoint);
   if (!settings.initial.empty()) initial = read_transformation(settings.initial);
   ProgressBar bar(!settings.quiet);
   const ProgressCallback progress = bar.callback();
   const auto max_points = static_cast<std::size_t>(settings.max_points);
   CloudInput source = read_cloud(settings.source, max_points, "read source", progress, settings.read);
   CloudInput target = read_cloud(settings.target, max_points, "read target", progress, settings.read);
-  const std::vector<std::string> warnings = warnings_about(source, target);
+  std::vector<std::string> warnings = warnings_about(source, target);
+  settle_viewpoint(source, source_viewpoint);
+  settle_viewpoint(target, target_viewpoint);
+  if (!source.viewpoint.warning.empty()) {
+    warnings.push_back(contradicted(source, "--source-viewpoint", settings.source_viewpoint));
+  }
+  if (!target.viewpoint.warning.empty()) {
+    warnings.push_back(contradicted(target, "--target-viewpoint", settings.target_viewpoint));
+  }
   stream_large_clouds(source, target, options.scale, progress);
   const double read = now_s(), cpu_before = cpu_now_s();
-  Result result = initial ? align(source.points, target.points, *initial, options, progress)
-                          : align(source.points, target.points, options, progress);
+  Result result = initial ? align(source.scan(), target.scan(), *initial, options, progress)
+                          : align(source.scan(), target.scan(), options, progress);
   const double cpu_seconds = cpu_now_s() - cpu_before;
   std::vector<Diagnosis> diagnosis;
   if (!result.registered && !settings.no_diagnose) {
@@ -201,6 +217,16 @@ constexpr const char* examples =
     "2 usage or option, 3 input or output, 128 + signal. PLY, PCD and text (XYZ, TXT, CSV, PTS) are read, written;\n"
     "the command of the Python package also takes LAS, LAZ, E57 and PTX, and writes them moved, their attributes kept.";
 
+void add_viewpoint_flag(CLI::App& align, const std::string& cloud, std::string& text) {
+  align
+      .add_option("--" + cloud + "-viewpoint", text,
+                  wrapped("where the scanner of the " + cloud +
+                          " stood, in the file's frame; a far point stands for one that looked along one direction. "
+                          "none: unknown, or a fused cloud; auto: what the file says; x,y,z! is used even where the "
+                          "cloud contradicts it; default auto"))
+      ->type_name("X,Y,Z|none|auto");
+}
+
 }  // namespace
 
 void add_align_command(CLI::App& app, Command& command) {
@@ -221,6 +247,8 @@ void add_align_command(CLI::App& app, Command& command) {
   align->add_option("--initial", settings->initial, "start from this target_from_source, 4x4 text, instead of a search")
       ->type_name("FILE");
   add_columns_flag(*align, settings->read);
+  add_viewpoint_flag(*align, "source", settings->source_viewpoint);
+  add_viewpoint_flag(*align, "target", settings->target_viewpoint);
   align->add_flag("--force", settings->force, "write -o and --transform also for an estimate that is not registered");
   align->add_flag("--no-diagnose", settings->no_diagnose,
                   wrapped("do not look for the cause of a refusal (mirrored or flat clouds, degrees, coarse "

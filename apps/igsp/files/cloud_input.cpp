@@ -58,6 +58,10 @@ CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points,
   return cloud;
 }
 
+void settle_viewpoint(CloudInput& cloud, const ViewpointRequest& request) {
+  cloud.viewpoint = find_viewpoint(cloud.points, request);
+}
+
 Points read_centroids(const CloudInput& cloud, double voxel_size, std::string_view stage,
                       const ProgressCallback& progress) {
   CloudFile reader(cloud.path, cloud.options);

@@ -6,6 +6,7 @@
 
 #include "igsp/io.hpp"
 #include "igsp/progress.hpp"
+#include "igsp/viewpoint.hpp"
 #include "spatial/scale.hpp"
 
 namespace igsp::cli {
@@ -13,19 +14,25 @@ namespace igsp::cli {
 /// A cloud as it came from a file.
 struct CloudInput {
   std::filesystem::path path;
-  ReadOptions options;      ///< as it was read, and is read again
-  std::string format;       ///< for people: "PLY, ascii"
-  Points points;            ///< all of them, or a sample if the file holds more than were asked for
-  std::size_t total = 0;    ///< finite points in the file
-  std::size_t dropped = 0;  ///< points left out for a coordinate that is not finite
-  Bounds bounds;            ///< of all points
+  ReadOptions options;         ///< as it was read, and is read again
+  std::string format;          ///< for people: "PLY, ascii"
+  Points points;               ///< all of them, or a sample if the file holds more than were asked for
+  std::size_t total = 0;       ///< finite points in the file
+  std::size_t dropped = 0;     ///< points left out for a coordinate that is not finite
+  Bounds bounds;               ///< of all points
+  ViewpointFinding viewpoint;  ///< where the scanner stood; unknown until settle_viewpoint
   bool whole() const { return points.size() == total; }
+  Scan scan() const { return {points, viewpoint.viewpoint}; }
 };
 
 /// Reads a cloud in one pass; of one of more than `max_points` a sample is kept that does not depend on their order, so
-/// that memory stays bounded. `stage` is the name of the progress. Throws FileError (also for a cloud without any extent).
+/// that memory stays bounded. `stage` is the name of the progress. Throws FileError (also for a cloud without any
+/// extent).
 CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points, std::string_view stage,
                       const ProgressCallback& progress, const ReadOptions& options = {});
+
+/// Settles where the scanner stood, from the points in memory.
+void settle_viewpoint(CloudInput& cloud, const ViewpointRequest& request);
 
 /// Voxel centroids of the whole file, in the file's frame, read in chunks: memory grows with the voxels only.
 Points read_centroids(const CloudInput& cloud, double voxel_size, std::string_view stage,

@@ -8,6 +8,7 @@
 #include "igsp/errors.hpp"
 #include "network/inputs.hpp"
 #include "network/outputs.hpp"
+#include "network/store.hpp"
 #include "shell/commands.hpp"
 #include "shell/exit_codes.hpp"
 #include "shell/help_text.hpp"
@@ -62,6 +63,21 @@ int exit_code(const Network& network) {
   return network.components.size() == 1 ? exit_registered : exit_not_registered;
 }
 
+// That of an earlier run stays; otherwise the scans are looked at.
+void choose_voxel_size(Options& options, NetworkStore& store, const ScanReading& reading, bool quiet,
+                       const ProgressCallback& progress) {
+  if (options.scale.voxel_size == 0) options.scale.voxel_size = store.voxel_size();
+  if (options.scale.voxel_size == 0) {
+    const FirstLook look = look_at_scans(reading, options.scale, progress);
+    for (const std::string& warning : look.warnings) {
+      if (!quiet) std::cerr << "igsp: warning: " << warning << "\n";
+    }
+    options.scale.voxel_size = look.voxel_size;
+    if (look.voxel_size > 0) store.keep_voxel_size(look.voxel_size);
+  }
+  store.use_voxel_size(options.scale.voxel_size);
+}
+
 int run_network(const NetworkSettings& settings) {
   NetworkOptions options = settings.options;
   options.pair = resolve(*settings.option_flags);
@@ -72,15 +88,10 @@ int run_network(const NetworkSettings& settings) {
   create_folder(settings.folder);
   ProgressBar bar(!settings.quiet);
   const ProgressCallback progress = bar.callback();
-  if (options.pair.scale.voxel_size == 0) {
-    const FirstLook look = look_at_scans(reading, options.pair.scale, progress);
-    options.pair.scale.voxel_size = look.voxel_size;
-    for (const std::string& warning : look.warnings) {
-      if (!settings.quiet) std::cerr << "igsp: warning: " << warning << "\n";
-    }
-  }
-  const auto features = [&](std::size_t i) { return read_features(reading, i, options.pair, progress); };
-  const Network network = register_network(reading.files.size(), features, options, progress);
+  NetworkStore store(settings.folder / "cache", reading, options.pair);
+  choose_voxel_size(options.pair, store, reading, settings.quiet, progress);
+  const auto features = [&](std::size_t i) { return store.features(i, progress); };
+  const Network network = register_network(reading.files.size(), features, options, progress, store.pairs());
   stop_if_interrupted();
   bar.finish();
   NamedNetwork named{network, {}};
@@ -97,6 +108,8 @@ constexpr const char* notes =
     "                the frame of its first scan; a scan that could not be placed is a component of its own\n"
     "  links.csv     every pair that was tried: used, unconfirmed (in no loop), rejected or not_registered, and why\n"
     "  network.json  all of it, with covariances; network.g2o, poses.tum: for other programs\n"
+    "  cache         features and pairs: the same command goes on where an earlier one stopped, and scans that are\n"
+    "                added are paired with the others only; may be deleted\n"
     "Example:\n"
     "  igsp network scans/*.ply -o survey\n"
     "Exit codes: 0 all scans in one frame, 1 not all, 2 usage or option, 3 a file that cannot be read (the others are\n"

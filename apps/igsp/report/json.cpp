@@ -14,6 +14,16 @@ Json to_json(const OptionValue& value) {
   return std::visit([](const auto& alternative) { return Json(alternative); }, value);
 }
 
+Json rows(const auto& matrix) {
+  Json all = Json::array();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(matrix(i, j));
+    all.push_back(row);
+  }
+  return all;
+}
+
 Json to_json(const CloudInput& input, const CloudSummary& summary) {
   return {{"path", input.path.string()},
           {"points", input.total},
@@ -22,7 +32,9 @@ Json to_json(const CloudInput& input, const CloudSummary& summary) {
           {"voxels", summary.voxels},
           {"keypoints", summary.keypoints},
           {"stray_points", summary.stray.count},
-          {"stray_extents_away", summary.stray.extents_away}};
+          {"stray_extents_away", summary.stray.extents_away},
+          {"viewpoint", summary.viewpoint ? Json(rows(summary.viewpoint->transpose())[0]) : Json(nullptr)},
+          {"viewpoint_because", input.viewpoint.reason}};
 }
 
 Json to_json(const std::vector<KeypointMatch>& matches) {
@@ -52,22 +64,21 @@ Json to_json(const IterationRecord& record) {
           {"correspondences", to_json(record.correspondences)}};
 }
 
-Json rows(const auto& matrix) {
-  Json all = Json::array();
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    Json row = Json::array();
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(matrix(i, j));
-    all.push_back(row);
-  }
-  return all;
+Json to_json(const std::optional<FreeSpaceViolation>& violation) {
+  if (!violation) return nullptr;
+  return {{"in_view", violation->in_view}, {"contradicting", violation->contradicting}, {"share", violation->share()}};
+}
+
+Json to_json(const FreeSpace& free_space) {
+  return {{"source", to_json(free_space.source)},
+          {"target", to_json(free_space.target)},
+          {"violation", free_space.source || free_space.target ? Json(free_space.violation()) : Json(nullptr)}};
 }
 
 Json to_json(const Evidence& evidence) {
-  return {{"mutual_matches", evidence.mutual_matches},
-          {"agreeing_matches", evidence.agreeing_matches},
-          {"contact_share", evidence.contact_share},
-          {"quality", evidence.quality},
-          {"rival_odds", evidence.rival_odds}};
+  return {{"mutual_matches", evidence.mutual_matches}, {"agreeing_matches", evidence.agreeing_matches},
+          {"contact_share", evidence.contact_share},   {"quality", evidence.quality},
+          {"rival_odds", evidence.rival_odds},         {"free_space", to_json(evidence.free_space)}};
 }
 
 Json to_json(const std::optional<RunnerUp>& runner_up) {

@@ -65,6 +65,14 @@ function showVerdict() {
   for (const warning of run.warnings) byId('warnings').append(make('li', 'Warning: ' + warning));
 }
 
+function addFreeSpace(table, freeSpace) {
+  const parts = ['source', 'target'].filter((cloud) => freeSpace[cloud])
+    .map((cloud) => `${(100 * freeSpace[cloud].share).toFixed(1)} % of the ${cloud}`);
+  if (parts.length === 0) return;
+  addRow(table, 'Seen through', parts.join(', '),
+    'of what lies in the other scanner\'s view stands in front of what that scanner saw: at a right pose that space is empty');
+}
+
 function showEvidence() {
   const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1) + '.';
   byId('reason').textContent = sentence(run.reason);
@@ -79,6 +87,7 @@ function showEvidence() {
       `${voxels(scene.reach_in_voxels)} at this pose`);
     addRow(table, 'Surfaces touch', percent(run.evidence.contact_share),
       'of the places where the surfaces come near each other');
+    addFreeSpace(table, run.evidence.free_space);
     addRow(table, 'RMSE', short(run.rmse), 'units of the cloud; along the normals, where the surfaces meet');
     addRow(table, 'Quality', short(run.evidence.quality), 'both questions in one number, on a scale of log odds');
   }

@@ -1,0 +1,124 @@
+#include "network/store.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <fstream>
+
+#include "files/output_file.hpp"
+#include "igsp/archive.hpp"
+#include "igsp/errors.hpp"
+#include "igsp/version.hpp"
+#include "network/fingerprint.hpp"
+#include "report/json.hpp"
+
+namespace igsp::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Neither changes an answer.
+Options what_matters(Options options) {
+  options.threads = 0;
+  return options;
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw FileError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
+}
+
+// What the network does not look at is most of a result.
+Result without_details(Result result) {
+  result.source_keypoints.clear();
+  result.target_keypoints.clear();
+  result.iterations.clear();
+  result.timings_s.clear();
+  return result;
+}
+
+// A full disk must not end a run whose answer may still fit: what is not kept is made again.
+template <typename Write>
+void if_possible(const Write& write) {
+  try {
+    write();
+  } catch (const FileError&) {
+  }
+}
+
+template <typename Read>
+auto if_readable(const fs::path& path, const Read& read) -> std::optional<decltype(read(path))> {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return {};
+  try {
+    return read(path);
+  } catch (const FileError&) {
+    return {};  // of another version, or damaged: made again
+  }
+}
+
+std::string text_of(const ScanReading& reading, std::size_t scan) {
+  std::string text = fmt::format("{} {}", reading.max_points, fmt::join(reading.read.columns, ","));
+  const auto viewpoint = reading.viewpoints.find(reading.files[scan]);
+  if (viewpoint == reading.viewpoints.end()) return text;
+  const Eigen::Vector3d& place = viewpoint->second;
+  return text + fmt::format(" seen from {} {} {}", place.x(), place.y(), place.z());
+}
+
+}  // namespace
+
+NetworkStore::NetworkStore(fs::path folder, const ScanReading& reading, const Options& options)
+    : folder_(std::move(folder)), reading_(reading), options_(options), keys_(reading.files.size()) {
+  make_folder(folder_ / "features");
+  make_folder(folder_ / "pairs");
+  options_text_ = fmt::format("{} {}", version, to_json(what_matters(options_)).dump());
+}
+
+double NetworkStore::voxel_size() const {
+  std::ifstream file(folder_ / ("voxel_size_" + fingerprint(options_text_)));
+  std::string text;
+  double number = 0;
+  if (!std::getline(file, text)) return 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc{} && number > 0 ? number : 0;
+}
+
+void NetworkStore::keep_voxel_size(double voxel_size) {
+  write_text(folder_ / ("voxel_size_" + fingerprint(options_text_)), fmt::format("{}\n", voxel_size));
+}
+
+void NetworkStore::use_voxel_size(double voxel_size) {
+  options_.scale.voxel_size = voxel_size;
+  options_text_ = fmt::format("{} {}", version, to_json(what_matters(options_)).dump());
+}
+
+Features NetworkStore::features(std::size_t scan, const ProgressCallback& progress) {
+  const fs::path& file = reading_.files[scan];
+  keys_[scan] = fingerprint(fingerprint_of_file(file) + text_of(reading_, scan) + options_text_);
+  const fs::path kept = folder_ / "features" / keys_[scan];
+  if (auto features = if_readable(kept, [](const fs::path& path) { return igsp::read_features(path); })) {
+    ++features_taken_;
+    return std::move(*features);
+  }
+  Features features = read_features(reading_, scan, options_, progress);
+  if_possible([&] { write_features(kept, features); });
+  return features;
+}
+
+fs::path NetworkStore::pair_file(std::size_t source, std::size_t target) const {
+  return folder_ / "pairs" / fingerprint(keys_[source] + keys_[target]);
+}
+
+PairStore NetworkStore::pairs() {
+  return {
+      [this](std::size_t source, std::size_t target) {
+        return if_readable(pair_file(source, target), [](const fs::path& path) { return read_result(path); });
+      },
+      [this](std::size_t source, std::size_t target, const Result& result) {
+        if_possible([&] { write_result(pair_file(source, target), without_details(result)); });
+      },
+  };
+}
+
+}  // namespace igsp::cli

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "igsp/network.hpp"
+#include "network/inputs.hpp"
+
+namespace igsp::cli {
+
+/// What a run of `igsp network` has finished, in a folder: features by the content of their file, pairs by the features
+/// of both, both by the options. A later run takes what still holds; a file that changed is another content. What
+/// cannot be kept or read back is made again.
+class NetworkStore {
+ public:
+  /// `options`: of the pairs. Makes the folder; throws FileError.
+  NetworkStore(std::filesystem::path folder, const ScanReading& reading, const Options& options);
+
+  /// The voxel size of an earlier run with these options: it stays, so that a scan added later does not make all
+  /// others new. 0: none.
+  double voxel_size() const;
+  void keep_voxel_size(double voxel_size);
+
+  /// From here on with this voxel size. Throws FileError as read_features does.
+  void use_voxel_size(double voxel_size);
+  Features features(std::size_t scan, const ProgressCallback& progress);
+
+  /// For register_network, after all features were asked for. Valid as long as the store.
+  PairStore pairs();
+
+  std::size_t features_taken() const { return features_taken_; }
+
+ private:
+  std::filesystem::path pair_file(std::size_t source, std::size_t target) const;
+
+  std::filesystem::path folder_;
+  const ScanReading& reading_;
+  Options options_;
+  std::string options_text_;
+  std::vector<std::string> keys_;  // of the scans' features
+  std::size_t features_taken_ = 0;
+};
+
+}  // namespace igsp::cli

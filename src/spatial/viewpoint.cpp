@@ -1,0 +1,49 @@
+#include "igsp/viewpoint.hpp"
+
+#include <fmt/format.h>
+
+namespace igsp {
+namespace {
+
+constexpr double most = 0.5;  // hidden from a viewpoint, of the points: it contradicts the cloud
+
+std::string percent(double share) {
+  return fmt::format("{:.0f} %", 100 * share);
+}
+
+ViewpointFinding given(PointView points, const ViewpointRequest& request) {
+  const double hidden = hidden_points(points, request.position).share;
+  if (hidden <= most) return {request.position, "given", ""};
+  if (request.insist) {
+    return {request.position, "given and insisted on, though " + percent(hidden) + " of the points are hidden from it",
+            ""};
+  }
+  const std::string why = percent(hidden) + " of the points are hidden from it behind others";
+  return {{}, "unknown: what was given contradicts the cloud, " + why, why};
+}
+
+ViewpointFinding declared_by_file(PointView points, const Eigen::Vector3d& declared) {
+  const double hidden = declared.allFinite() ? hidden_points(points, declared).share : 1;
+  if (hidden <= most) return {declared, "the file says so", ""};
+  return {{},
+          "unknown: what the file says contradicts its points, of which " + percent(hidden) + " are hidden from it",
+          ""};
+}
+
+}  // namespace
+
+ViewpointFinding find_viewpoint(PointView points, const ViewpointRequest& request,
+                                const std::optional<Eigen::Vector3d>& declared) {
+  switch (request.kind) {
+    case ViewpointRequest::Kind::given:
+      return given(points, request);
+    case ViewpointRequest::Kind::none:
+      return {{}, "none, as asked", ""};
+    case ViewpointRequest::Kind::automatic:
+      break;
+  }
+  if (declared) return declared_by_file(points, *declared);
+  return {{}, "unknown: nobody says it", ""};
+}
+
+}  // namespace igsp
