@@ -153,7 +153,7 @@ void write_outputs(const AlignSettings& settings, const Result& result, const Js
 std::vector<Diagnosis> causes_of(Result& refused, const CloudInput& source, const CloudInput& target, bool search,
                                  const ProgressCallback& progress) {
   const double start = now_s();
-  std::vector<Diagnosis> causes = diagnose(source.points, target.points, refused, {.search = search}, progress);
+  std::vector<Diagnosis> causes = diagnose(source.scan(), target.scan(), refused, {.search = search}, progress);
   refused.timings_s.emplace_back("diagnosis", now_s() - start);
   return causes;
 }
