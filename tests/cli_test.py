@@ -136,7 +136,7 @@ class Align(CommandTest):
         report = json.loads((self.folder / "r.json").read_text())
         for key in ["verdict", "reason", "confidence", "target_from_source", "overlap", "rmse", "voxel_size",
                     "options", "iterations", "timings_s", "keypoints", "peak_memory_bytes", "version", "warnings",
-                    "evidence", "runner_up", "precision"]:
+                    "evidence", "runner_up", "precision", "diagnosis"]:
             self.assertIn(key, report)
         self.assertEqual(report["verdict"], "registered")
         self.assertEqual(np.array(report["target_from_source"]).shape, (4, 4))
@@ -223,6 +223,25 @@ class Align(CommandTest):
         report = json.loads((self.folder / "r.json").read_text())
         self.assertEqual(report["verdict"], "not_registered")
         self.assertGreater(len(report["reason"]), 10)
+
+    def test_a_refusal_names_its_cause_unless_told_not_to(self):
+        points = read_ply(self.source)[0]
+        mirrored, flat = self.cloud("m.ply", points * [1, -1, 1]), self.cloud("flat.ply", points * [1, 1, 0])
+        run = self.igsp("align", mirrored, self.target, "--report", "r.json", code=1)
+        self.assertIn("\ndiagnosis: the mirrored source would register", run.stdout)
+        report = json.loads((self.folder / "r.json").read_text())
+        [cause] = report["diagnosis"]
+        self.assertEqual(cause["cause"], "mirrored")
+        np.testing.assert_allclose(np.array(cause["target_from_source"]), np.loadtxt(self.truth) * [1, -1, 1, 1],
+                                   atol=0.2)
+        self.assertIn("diagnosis", report["timings_s"])
+        silent = self.igsp("align", mirrored, self.target, "--no-diagnose", "--report", "r.json", code=1)
+        self.assertNotIn("diagnosis", silent.stdout)
+        self.assertEqual(json.loads((self.folder / "r.json").read_text())["diagnosis"], [])
+        self.assertIn("\ndiagnosis: z is 0 everywhere in the source",
+                      self.igsp("align", flat, self.target, code=1).stdout)
+        # From a guess nothing is searched, neither for the pair nor for its mirror image.
+        self.assertNotIn("diagnosis:", self.igsp("align", mirrored, self.target, "--initial", self.truth, code=1).stdout)
 
     def test_a_large_cloud_is_streamed_to_nearly_the_same_answer(self):
         self.igsp("align", self.source, self.target, "--max-points", "20000", "--transform", "T.txt",

@@ -19,13 +19,14 @@ ALLOWED = {
     "matching": FEATURES | {"matching"},
     "estimation": FEATURES | {"estimation"},
     "registration": REGISTRATION,
+    "diagnosis": REGISTRATION | {"diagnosis"},
     "network": REGISTRATION | {"network"},
     "io": SPATIAL | {"io"},
     "config": SPATIAL | {"io", "config"},
     "archive": SPATIAL | {"io", "config", "archive"},
     "simulation": SPATIAL | {"simulation"},
 }
-APPS_ALLOWED = REGISTRATION | {"network", "io", "config", "archive", "simulation"}
+APPS_ALLOWED = REGISTRATION | {"diagnosis", "network", "io", "config", "archive", "simulation"}
 # The rooms of the command, in apps/igsp/: a command's room may use these below it and itself; command_line.cpp, all.
 SHARED_ROOMS = {"shell": set(), "files": {"shell"}, "report": {"shell", "files"}}
 COMMAND_ROOMS = {"align", "benchmark", "completion", "evaluate", "network", "options", "simulate"}

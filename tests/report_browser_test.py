@@ -129,6 +129,7 @@ class Registered(PageTest):
         self.assertIn("Registered", self.find("verdict-word").text)
         self.assertRegex(self.find("verdict-text").text, r"confidence (9\d\.\d|above 99\.9) %\.")
         self.assertIn("mutual matches agree", self.find("reason").text)
+        self.assertFalse(self.find("diagnosis").is_displayed())
 
     def test_the_picture_shows_both_clouds(self):
         pixels = self.pixels()
@@ -306,6 +307,11 @@ class Others(PageTest):
         self.assertFalse(self.find("step").is_enabled())
         self.assertFalse(self.find("loop").is_displayed())
         self.assertGreater(self.pixels()["drawn"], 0)
+
+    def test_it_names_the_cause_of_the_refusal(self):
+        self.open("line.html")
+        self.assertTrue(self.find("diagnosis").is_displayed())
+        self.assertIn("All points of both clouds lie on a line", self.find("diagnosis").text)
 
     def test_a_source_far_away_is_seen_beside_the_target_and_said_so(self):
         self.open("far.html")

@@ -2,6 +2,7 @@
 
 #include "igsp/align.hpp"
 #include "igsp/archive.hpp"
+#include "igsp/diagnosis.hpp"
 #include "igsp/errors.hpp"
 #include "igsp/evaluation.hpp"
 #include "igsp/io.hpp"

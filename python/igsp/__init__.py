@@ -8,6 +8,7 @@
 
 from igsp._core import (
     CloudSummary,
+    Diagnosis,
     Evidence,
     Features,
     FreeDirection,
@@ -33,11 +34,12 @@ from igsp.files import (
     write_result,
     write_transformation,
 )
-from igsp.registration import align, extract_features, options
+from igsp.registration import align, diagnose, extract_features, options
 
 __all__ = [
     "Cancelled",
     "CloudSummary",
+    "Diagnosis",
     "Evidence",
     "Features",
     "FreeDirection",
@@ -51,6 +53,7 @@ __all__ = [
     "SimulatedScan",
     "__version__",
     "align",
+    "diagnose",
     "extract_features",
     "match_quality",
     "options",

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from igsp import _core
-from igsp._core import Features, Result
+from igsp._core import Diagnosis, Features, Result
 from igsp.arrays import Points, matrix_array, points_array
 from igsp.files import read_points
 from igsp.progress import ProgressBar, ProgressFunction
@@ -56,6 +56,20 @@ def align(
             keywords,
             report,
         )
+
+
+def diagnose(
+    source: object, target: object, refused: Result, *, search: bool = True, progress: Progress = False
+) -> list[Diagnosis]:
+    """Why `align` may have refused this pair: mirrored or flat clouds, degrees, coarse coordinates, too few points.
+
+    `source`, `target`: as given to `align`, but no Features. `refused`: its answer, whose options are used again.
+    `search`: False leaves out what takes about as long as `align` itself, registering the mirrored source.
+
+    Most likely first; empty if nothing was found, as for clouds that simply do not overlap, and for a registered pair.
+    """
+    with _progress_function(progress) as report:
+        return _core.diagnose(_load(source, "source"), _load(target, "target"), refused, search, report)
 
 
 def extract_features(cloud: object, *, progress: Progress = False, **options: Unpack[OptionKeywords]) -> Features:

@@ -68,10 +68,14 @@ Array<std::uint32_t, -1, 2> view(std::vector<KeypointMatch>& matches) {
 }
 
 Array<double, 4, 4> array_of(const Transformation& transformation) {
+  return array_of(transformation.matrix());
+}
+
+Array<double, 4, 4> array_of(const Eigen::Matrix4d& matrix) {
   using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-  auto matrix = std::make_unique<RowMajor>(transformation.matrix());
-  double* data = matrix->data();
-  nb::capsule owner(matrix.release(), [](void* pointer) noexcept { delete static_cast<RowMajor*>(pointer); });
+  auto kept = std::make_unique<RowMajor>(matrix);
+  double* data = kept->data();
+  nb::capsule owner(kept.release(), [](void* pointer) noexcept { delete static_cast<RowMajor*>(pointer); });
   return {data, {4, 4}, owner};
 }
 

@@ -43,6 +43,7 @@ Array<std::uint32_t, -1, 2> view(std::vector<KeypointMatch>& matches);
 
 // ... and arrays that own their memory.
 Array<double, 4, 4> array_of(const Transformation& transformation);
+Array<double, 4, 4> array_of(const Eigen::Matrix4d& matrix);
 Array<double, -1, 3> array_of(Points&& points);
 
 }  // namespace igsp::python

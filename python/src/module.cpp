@@ -10,6 +10,7 @@ NB_MODULE(_core, module) {
   bind_result(module);
   bind_features(module);
   bind_align(module);
+  bind_diagnosis(module);
   bind_evaluation(module);
   bind_files(module);
   bind_archive(module);

@@ -31,6 +31,9 @@ void fill(Random& random, T& value) {
 void fill(Random& random, Termination& value) {
   value = static_cast<Termination>(random.bits() % 5);
 }
+void fill(Random& random, Cause& value) {
+  value = static_cast<Cause>(random.bits() % 5);
+}
 void fill(Random& random, std::string& value) {
   value = "text \0 and " + std::to_string(random.bits());
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -49,18 +50,33 @@ struct Codec<bool> {
   static std::string describe() { return "bool"; }
 };
 
+/// What is written as the number of one of its values.
+template <typename T>
+struct Listed;
 template <>
-struct Codec<Termination> {
+struct Listed<Termination> {
+  static constexpr std::string_view name = "termination reason";
+  static constexpr Termination last = Termination::degenerate_matches;
+};
+template <>
+struct Listed<Cause> {
+  static constexpr std::string_view name = "cause";
+  static constexpr Cause last = Cause::mirrored;
+};
+
+template <typename T>
+requires std::is_enum_v<T>
+struct Codec<T> {
   static constexpr std::size_t least_bytes = sizeof(std::int32_t);
-  static void put(Encoder& out, Termination value) { out.scalar(static_cast<std::int32_t>(value)); }
-  static void get(Decoder& in, Termination& value) {
+  static void put(Encoder& out, T value) { out.scalar(static_cast<std::int32_t>(value)); }
+  static void get(Decoder& in, T& value) {
     const auto number = in.scalar<std::int32_t>();
-    if (number < 0 || number > static_cast<std::int32_t>(Termination::degenerate_matches)) {
-      in.fail("there is no termination reason " + std::to_string(number));
+    if (number < 0 || number > static_cast<std::int32_t>(Listed<T>::last)) {
+      in.fail("there is no " + std::string(Listed<T>::name) + " " + std::to_string(number));
     }
-    value = static_cast<Termination>(number);
+    value = static_cast<T>(number);
   }
-  static std::string describe() { return "termination"; }
+  static std::string describe() { return std::string(Listed<T>::name); }
 };
 
 template <>

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "config/field_count.hpp"
+#include "igsp/diagnosis.hpp"
 #include "igsp/evaluation.hpp"
 #include "igsp/features.hpp"
 #include "igsp/result.hpp"
@@ -176,6 +177,16 @@ struct Layout<Result> {
 };
 
 template <>
+struct Layout<Diagnosis> {
+  static constexpr std::string_view name = "Diagnosis";
+  static constexpr std::tuple fields = {
+      Field{"cause", &Diagnosis::cause},
+      Field{"description", &Diagnosis::description},
+      Field{"target_from_source", &Diagnosis::target_from_source},
+  };
+};
+
+template <>
 struct Layout<PoseError> {
   static constexpr std::string_view name = "PoseError";
   static constexpr std::tuple fields = {
@@ -206,8 +217,9 @@ struct Layout<SimulatedScan> {
 };
 
 using AllStructs =
-    std::tuple<StrayPoints, Features, KeypointMatch, IterationRecord, CloudSummary, FreeDirection, Precision, FreeSpaceViolation,
-               FreeSpace, Evidence, RunnerUp, Result, PoseError, MatchQuality, SimulatedScan>;
+    std::tuple<StrayPoints, Features, KeypointMatch, IterationRecord, CloudSummary, FreeDirection, Precision,
+               FreeSpaceViolation, FreeSpace, Evidence, RunnerUp, Result, Diagnosis, PoseError, MatchQuality,
+               SimulatedScan>;
 
 template <typename T>
 concept HasLayout = requires {

@@ -133,3 +133,22 @@ def test_progress_bars(pair, capsys):
     assert len(lines) > 8 and all("100%" in line.split("\r")[-1] for line in lines)
     igsp.align(*pair)
     assert capsys.readouterr().err == ""
+
+
+def test_a_left_handed_source_is_diagnosed(scans):
+    source, target = (igsp.read_points(scans / f"indoor/station_{i}.ply") for i in (1, 0))
+    reflection = np.diag([1.0, -1, 1, 1])
+    left_handed = source @ reflection[:3, :3]
+    refused = igsp.align(left_handed, target)
+    [mirrored] = igsp.diagnose(left_handed, target, refused)
+    assert mirrored.cause == "mirrored" and "left-handed" in str(mirrored)
+    truth = np.loadtxt(scans / "indoor/station_1_to_0.txt") @ reflection
+    np.testing.assert_allclose(mirrored.target_from_source, truth, atol=0.05)
+    assert igsp.diagnose(left_handed, target, refused, search=False) == []
+
+
+def test_flat_clouds_are_diagnosed_and_registered_ones_are_not(pair, result):
+    flat = pair[0] * [1, 1, 0]
+    [found] = igsp.diagnose(flat, pair[1], igsp.align(flat, pair[1]))
+    assert found.cause == "flat" and found.target_from_source is None and "z is 0" in found.description
+    assert igsp.diagnose(*pair, result) == []

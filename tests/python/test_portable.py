@@ -37,7 +37,7 @@ def bound_things(pair, features, result, truth):
     yield from [igsp.pose_error(truth, np.eye(4), [1, 2, 3]), igsp.simulate("object", points=2000)[0]]
     plane = np.random.default_rng(0).uniform(size=(20000, 3)) * [1, 1, 0]
     flat = igsp.align(plane, plane)
-    yield from [flat, *flat.precision.free_directions]
+    yield from [flat, *flat.precision.free_directions, *igsp.diagnose(plane, plane, flat)]
     if result.runner_up:
         yield result.runner_up
 

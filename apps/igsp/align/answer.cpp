@@ -60,8 +60,10 @@ std::string stray_text(const CloudSummary& cloud) {
                      one ? "lies" : "lie up to", cloud.stray.extents_away, one ? "was" : "were");
 }
 
-std::string answer_text(const Result& result, bool voxel_size_given, double seconds) {
+std::string answer_text(const Result& result, const std::vector<Diagnosis>& diagnosis, bool voxel_size_given,
+                        double seconds) {
   std::string text = fmt::format("{}: {}\n", result.registered ? "registered" : "not registered", result.reason);
+  for (const Diagnosis& cause : diagnosis) text += fmt::format("diagnosis: {}\n", cause.description);
   if (result.has_estimate) {
     text += result.registered ? "target_from_source\n" : "best estimate of target_from_source, not to be relied on\n";
     text += matrix_text(result.target_from_source);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "igsp/diagnosis.hpp"
 #include "igsp/result.hpp"
 
 namespace igsp::cli {
@@ -9,8 +11,10 @@ namespace igsp::cli {
 /// Four lines in aligned columns; the numbers read back as the same doubles.
 std::string matrix_text(const Transformation& transformation);
 
-/// What `igsp align` prints: verdict, transformation and the evidence. `seconds` is the time of the whole run.
-std::string answer_text(const Result& result, bool voxel_size_given, double seconds);
+/// What `igsp align` prints: verdict and its causes, transformation and the evidence. `seconds` is the time of the
+/// whole run.
+std::string answer_text(const Result& result, const std::vector<Diagnosis>& diagnosis, bool voxel_size_given,
+                        double seconds);
 
 /// Such as "1 of 8254 points lies 2.3 extents away and was left out".
 std::string stray_text(const CloudSummary& cloud);

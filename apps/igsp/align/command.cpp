@@ -13,6 +13,7 @@
 #include "files/moved_output.hpp"
 #include "files/output_file.hpp"
 #include "igsp/align.hpp"
+#include "igsp/diagnosis.hpp"
 #include "igsp/errors.hpp"
 #include "igsp/io.hpp"
 #include "report/json.hpp"
@@ -36,7 +37,7 @@ struct AlignSettings {
   ReadOptions read;
   std::string source_viewpoint = "auto", target_viewpoint = "auto";
   std::int64_t max_points = 20'000'000;
-  bool force = false, quiet = false, verbose = false;
+  bool force = false, quiet = false, verbose = false, no_diagnose = false;
   std::shared_ptr<OptionFlags> option_flags;
 };
 
@@ -149,6 +150,14 @@ void write_outputs(const AlignSettings& settings, const Result& result, const Js
   for (const std::string& note : notes) std::cout << note << "\n";
 }
 
+std::vector<Diagnosis> causes_of(Result& refused, const CloudInput& source, const CloudInput& target, bool search,
+                                 const ProgressCallback& progress) {
+  const double start = now_s();
+  std::vector<Diagnosis> causes = diagnose(source.scan(), target.scan(), refused, {.search = search}, progress);
+  refused.timings_s.emplace_back("diagnosis", now_s() - start);
+  return causes;
+}
+
 int run_align(const AlignSettings& settings) {
   const double start = now_s();
   const Options options = resolve(*settings.option_flags);
@@ -179,6 +188,10 @@ int run_align(const AlignSettings& settings) {
   Result result = initial ? align(source.scan(), target.scan(), *initial, options, progress)
                           : align(source.scan(), target.scan(), options, progress);
   const double cpu_seconds = cpu_now_s() - cpu_before;
+  std::vector<Diagnosis> diagnosis;
+  if (!result.registered && !settings.no_diagnose) {
+    diagnosis = causes_of(result, source, target, !initial, progress);
+  }
   stop_if_interrupted();
   bar.finish();
   result.source.points = source.total;
@@ -187,10 +200,11 @@ int run_align(const AlignSettings& settings) {
   for (const std::string& warning : warnings) {
     if (!settings.quiet) std::cerr << "igsp: warning: " << warning << "\n";
   }
-  std::cout << answer_text(result, options.scale.voxel_size > 0.0, now_s() - start);
+  std::cout << answer_text(result, diagnosis, options.scale.voxel_size > 0.0, now_s() - start);
   if (settings.verbose) std::cout << details_text(result);
   std::cout.flush();  // before the bar of what is written
-  write_outputs(settings, result, align_report(result, source, target, cpu_seconds, warnings), source, target, bar);
+  write_outputs(settings, result, align_report(result, diagnosis, source, target, cpu_seconds, warnings), source,
+                target, bar);
   return result.registered ? exit_registered : exit_not_registered;
 }
 
@@ -236,6 +250,9 @@ void add_align_command(CLI::App& app, Command& command) {
   add_viewpoint_flag(*align, "source", settings->source_viewpoint);
   add_viewpoint_flag(*align, "target", settings->target_viewpoint);
   align->add_flag("--force", settings->force, "write -o and --transform also for an estimate that is not registered");
+  align->add_flag("--no-diagnose", settings->no_diagnose,
+                  wrapped("do not look for the cause of a refusal (mirrored or flat clouds, degrees, coarse "
+                          "coordinates), which may take as long again"));
   align
       ->add_option("--max-points", settings->max_points,
                    wrapped("a cloud with more points is streamed through the voxel filter instead of kept whole; "

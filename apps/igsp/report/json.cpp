@@ -98,6 +98,16 @@ Json to_json(const Precision& precision) {
           {"free_directions", free_directions}};
 }
 
+Json to_json(const std::vector<Diagnosis>& diagnosis) {
+  Json causes = Json::array();
+  for (const Diagnosis& found : diagnosis) {
+    Json cause{{"cause", to_string(found.cause)}, {"description", found.description}};
+    cause["target_from_source"] = found.target_from_source ? rows(*found.target_from_source) : Json(nullptr);
+    causes.push_back(std::move(cause));
+  }
+  return causes;
+}
+
 bool holds_an_object(const Json& json) {
   return json.is_object() || (json.is_array() && std::ranges::any_of(json, holds_an_object));
 }
@@ -144,12 +154,13 @@ Json to_json(const Options& options) {
   return json;
 }
 
-Json align_report(const Result& result, const CloudInput& source, const CloudInput& target, double cpu_seconds,
-                  const std::vector<std::string>& warnings) {
+Json align_report(const Result& result, const std::vector<Diagnosis>& diagnosis, const CloudInput& source,
+                  const CloudInput& target, double cpu_seconds, const std::vector<std::string>& warnings) {
   Json json;
   json["version"] = version;
   json["verdict"] = result.registered ? "registered" : "not_registered";
   json["reason"] = result.reason;
+  json["diagnosis"] = to_json(diagnosis);
   json["termination"] = to_string(result.termination);
   json["target_from_source"] = result.has_estimate ? to_json(result.target_from_source) : Json(nullptr);
   json["confidence"] = result.confidence;

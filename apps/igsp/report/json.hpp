@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "files/cloud_input.hpp"
+#include "igsp/diagnosis.hpp"
 #include "igsp/result.hpp"
 
 namespace igsp::cli {
@@ -19,8 +20,8 @@ Json to_json(const Options& options);
 
 /// What `igsp align --report` writes. `cpu_seconds`: of the registration, without reading, all threads.
 /// To be written with report_text.
-Json align_report(const Result& result, const CloudInput& source, const CloudInput& target, double cpu_seconds,
-                  const std::vector<std::string>& warnings);
+Json align_report(const Result& result, const std::vector<Diagnosis>& diagnosis, const CloudInput& source,
+                  const CloudInput& target, double cpu_seconds, const std::vector<std::string>& warnings);
 
 /// Indented, but an array of numbers, of any depth, stays on one line: keypoints and correspondences are many.
 std::string report_text(const Json& report);

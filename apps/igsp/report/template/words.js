@@ -74,7 +74,10 @@ function addFreeSpace(table, freeSpace) {
 }
 
 function showEvidence() {
-  byId('reason').textContent = run.reason.charAt(0).toUpperCase() + run.reason.slice(1) + '.';
+  const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1) + '.';
+  byId('reason').textContent = sentence(run.reason);
+  for (const cause of run.diagnosis) byId('diagnosis').append(make('li', sentence(cause.description)));
+  byId('diagnosis').hidden = run.diagnosis.length === 0;
   const table = byId('evidence');
   const {mutual_matches: mutual, agreeing_matches: agreeing} = run.evidence;
   addRow(table, 'Confidence', confidenceText(run.confidence), 'that the pose is right; registered from 50 % on');
