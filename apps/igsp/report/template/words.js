@@ -89,7 +89,7 @@ function showEvidence() {
       'of the places where the surfaces come near each other');
     addFreeSpace(table, run.evidence.free_space);
     addRow(table, 'RMSE', short(run.rmse), 'units of the cloud; along the normals, where the surfaces meet');
-    addRow(table, 'Quality', short(run.evidence.quality), 'both questions in one number, on a scale of log odds');
+    addRow(table, 'Quality', short(run.evidence.quality), 'both questions in one number, as log10 odds');
   }
   addRow(table, 'Runner-up', run.runner_up ? percent(run.runner_up.share) : 'none',
     run.runner_up ? 'of the matches of this pose agree at the best other one; near 100 % the two are hard to tell apart'
