@@ -47,7 +47,9 @@ Stages after_features(const Stages& last) {
 TEST(ProgressOfAlign, NamesEveryStage) {
   const Pair pair = testing::simulated_pair("indoor", points);
   EXPECT_EQ(stages_of(reports_of(pair)),
-            after_features({"hypotheses", "screening", "ranking", "loop", "refinement", "verdict"}));
+            after_features({"hypotheses", "screening", "ranking", "hypotheses", "screening", "ranking", "loop", "refinement",
+                            "verdict"}))
+      << "the coarser scale does not settle this pair";
   EXPECT_EQ(stages_of(reports_of(pair, &pair.truth)), after_features({"loop", "refinement", "verdict"}));
 }
 

@@ -78,7 +78,7 @@ Recipe make_recipe(std::uint64_t number, Random& random) {
   Recipe recipe = place < 12   ? make_ordinary(12 * round + place, random)
                   : place < 16 ? make_different(4 * round + place - 12, random)
                                : make_ambiguous(4 * round + place - 16, random);
-  recipe.points = static_cast<int>(std::exp(random.uniform(std::log(20'000.0), std::log(100'000.0))));
+  recipe.points = static_cast<int>(std::exp(random.uniform(std::log(1'000.0), std::log(200'000.0))));
   if (random.chance(0.3)) recipe.thinning = random.uniform(0.1, 1.0);
   const bool is_sector = sees_all_around(recipe.source_scene) && sees_all_around(recipe.target_scene);
   if (is_sector && random.chance(0.4)) recipe.field_of_view_deg = random.uniform(90.0, 200.0);

@@ -8,7 +8,7 @@
 #include <iostream>
 
 #include "benchmark/cases.hpp"
-#include "benchmark/csv.hpp"
+#include "files/csv.hpp"
 #include "benchmark/judgement.hpp"
 #include "files/output_file.hpp"
 #include "igsp/errors.hpp"

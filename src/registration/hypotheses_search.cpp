@@ -140,9 +140,11 @@ std::vector<Rival> rank(CommonFrame& frame, std::span<const Rematch> candidates,
   return ranked;
 }
 
-// The best one explains the clouds well, and no other pose does nearly as well.
+// The best one explains the clouds well, as many of its matches agree as its overlap lets expect, and no other pose
+// explains them nearly as well.
 bool is_settled(std::span<const Rival> ranked, double voxel_size) {
   if (ranked.empty() || ranked.front().assessment.quality < settled_quality) return false;
+  if (ranked.front().assessment.share_of_expected() < 1) return false;
   return std::none_of(ranked.begin() + 1, ranked.end(), [&](const Rival& rival) {
     return rival.assessment.quality > ranked.front().assessment.quality - settled_quality &&
            !same_pose(rival.target_from_source, ranked.front().target_from_source, Eigen::Vector3d::Zero(), voxel_size);

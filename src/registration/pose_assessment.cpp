@@ -10,21 +10,25 @@ namespace {
 
 constexpr double agreeing_distance = 2.5;  // voxels
 // Log odds of 1 right to 1 wrong answer: docs/verdict.md tells how they were fitted.
-constexpr double contact_weight = 2.0, matches_weight = 2.0, missing_weight = 1.5, even = 4.4;
+constexpr double contact_weight = 2.0, matches_weight = 2.0, missing_weight = 5.0, even = 4.4;
 constexpr double expected_agreement = 0.8;  // share of mutual matches that agree, over overlap: right poses have more
 
 double quality_of(const PoseAssessment& pose) {
   const double s = std::sqrt(pose.source_on_target.share * pose.target_on_source.share);
-  const double mutual = std::max(1.0, static_cast<double>(pose.mutual_matches));
-  const double agreeing = static_cast<double>(pose.agreeing_matches);
-  const double overlap = std::min(pose.source_on_target.overlap, pose.target_on_source.overlap);
+  const auto agreeing = static_cast<double>(pose.agreeing_matches);
   // Where much overlaps much must agree: the same architecture elsewhere lies well on itself, yet few features agree.
-  const double missing = (agreeing + 0.1) / mutual / (expected_agreement * std::max(overlap, 0.02));
   return contact_weight * std::log10(s / (1 - s)) + matches_weight * std::log10(agreeing + 1) +
-         missing_weight * std::log10(std::min(1.0, missing)) - even;
+         missing_weight * std::log10(std::min(1.0, pose.share_of_expected())) - even;
 }
 
 }  // namespace
+
+double PoseAssessment::share_of_expected() const {
+  const double share =
+      (static_cast<double>(agreeing_matches) + 0.1) / std::max(1.0, static_cast<double>(mutual_matches));
+  const double overlap = std::min(source_on_target.overlap, target_on_source.overlap);
+  return share / (expected_agreement * std::max(overlap, 0.02));
+}
 
 PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from_source) {
   PoseAssessment assessment;

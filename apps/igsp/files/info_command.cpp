@@ -50,12 +50,16 @@ void print_info(const CloudInput& cloud) {
   std::cout << cloud.path.string() << "\n";
   std::cout << fmt::format("  format                {}\n", cloud.format);
   std::cout << fmt::format("  points                {}{}\n", cloud.total,
-             cloud.dropped > 0 ? fmt::format(" and {} dropped, not finite", cloud.dropped) : "");
+                           cloud.dropped > 0 ? fmt::format(" and {} dropped, not finite", cloud.dropped) : "");
   std::cout << fmt::format("  extent                {:.6g} x {:.6g} x {:.6g}\n", extent.x(), extent.y(), extent.z());
-  std::cout << fmt::format("  from                  {:.10g}\n", fmt::join(cloud.bounds.min.data(), cloud.bounds.min.data() + 3, " "));
-  std::cout << fmt::format("  to                    {:.10g}\n", fmt::join(cloud.bounds.max.data(), cloud.bounds.max.data() + 3, " "));
-  std::cout << fmt::format("  largest coordinate    {:.10g} (as float: exact to {:.2g})\n", magnitude, std::ldexp(magnitude, -24));
-  std::cout << fmt::format("  spacing               {:.4g}{}\n", spacing, cloud.whole() ? "" : " (of the points kept in memory)");
+  std::cout << fmt::format("  from                  {:.10g}\n",
+                           fmt::join(cloud.bounds.min.data(), cloud.bounds.min.data() + 3, " "));
+  std::cout << fmt::format("  to                    {:.10g}\n",
+                           fmt::join(cloud.bounds.max.data(), cloud.bounds.max.data() + 3, " "));
+  std::cout << fmt::format("  largest coordinate    {:.10g} (as float: exact to {:.2g})\n", magnitude,
+                           std::ldexp(magnitude, -24));
+  std::cout << fmt::format("  spacing               {:.4g}{}\n", spacing,
+                           cloud.whole() ? "" : " (of the points kept in memory)");
   std::cout << fmt::format("  suggested voxel size  {:.4g}\n", voxel_size);
 }
 

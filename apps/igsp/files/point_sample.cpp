@@ -18,7 +18,8 @@ std::uint64_t mixed(std::uint64_t bits) {
 
 std::uint64_t hash_of(const Eigen::Vector3d& point) {
   std::uint64_t hash = 0;
-  for (const double coordinate : point) hash = mixed(hash + 0x9E3779B97F4A7C15ull + std::bit_cast<std::uint64_t>(coordinate));
+  for (const double coordinate : point)
+    hash = mixed(hash + 0x9E3779B97F4A7C15ull + std::bit_cast<std::uint64_t>(coordinate));
   return hash;
 }
 
