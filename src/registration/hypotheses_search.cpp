@@ -151,7 +151,8 @@ bool is_settled(std::span<const Rival> ranked, double voxel_size) {
   });
 }
 
-// Proposes and screens at `scale`, refines and ranks at the finer one; `ranked` grows by what is new.
+// Proposes and screens at `scale`, refines and ranks at the finer one. What the other scale found already is ranked twice:
+// the verdict leaves out what repeats the winner, but not what repeats a rival.
 void search_at(CommonFrame& scale, CommonFrame& finer, const Options& options, StageClock& clock,
                std::vector<Rival>& ranked) {
   clock.start("hypotheses");
