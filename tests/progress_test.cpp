@@ -46,7 +46,10 @@ Stages after_features(const Stages& last) {
 
 TEST(ProgressOfAlign, NamesEveryStage) {
   const Pair pair = testing::simulated_pair("indoor", points);
+  const Pair hopeless{pair.source, testing::simulated_pair("indoor", points, 0, 8).target, pair.truth};
   EXPECT_EQ(stages_of(reports_of(pair)),
+            after_features({"hypotheses", "screening", "ranking", "loop", "refinement", "verdict"}));
+  EXPECT_EQ(stages_of(reports_of(hopeless)),
             after_features({"hypotheses", "screening", "ranking", "hypotheses", "screening", "ranking", "loop", "refinement",
                             "verdict"}))
       << "the coarser scale does not settle this pair";

@@ -136,6 +136,8 @@ void bind_result(nb::module_& module) {
       .def_ro("rmse", &Result::rmse,
               "Inlier RMSE: distances along the normals where the surfaces meet [units of the cloud].")
       .def_ro("voxel_size", &Result::voxel_size, "[units of the cloud].")
+      .def_ro("loop_voxel_size", &Result::loop_voxel_size,
+              "At which keypoints and iterations were made [units of the cloud]: voxel_size or twice that.")
       .def_ro("source", &Result::source, "Sizes of the source.")
       .def_ro("target", &Result::target, "Sizes of the target.")
       .def_prop_ro("source_keypoints", &view_of_member<Result, &Result::source_keypoints>,

@@ -166,6 +166,7 @@ struct Layout<Result> {
       Field{"precision", &Result::precision},
       Field{"rmse", &Result::rmse},
       Field{"voxel_size", &Result::voxel_size},
+      Field{"loop_voxel_size", &Result::loop_voxel_size},
       Field{"source", &Result::source},
       Field{"target", &Result::target},
       Field{"source_keypoints", &Result::source_keypoints},

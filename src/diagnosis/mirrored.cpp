@@ -11,7 +11,7 @@ namespace {
 
 // Whether there is an answer is asked, not how exact it is: fewer hypotheses and, where enough voxels are left, the
 // coarser scale keep the price well below that of the pair itself.
-constexpr int max_proposed = 16;
+constexpr int max_proposed = 12, max_refined = 2;
 constexpr std::size_t enough_voxels = 4000;
 
 // Any plane will do, the others differ by a rigid motion. Across a vertical one a levelled scan stays levelled.
@@ -29,6 +29,7 @@ std::optional<Diagnosis> mirrored(const Scan& source, const Scan& target, const 
   const bool coarser = std::min(refused.source.voxels, refused.target.voxels) >= enough_voxels;
   options.scale.voxel_size = (coarser ? 2 : 1) * refused.voxel_size;
   options.hypotheses.max_proposed = std::min(options.hypotheses.max_proposed, max_proposed);
+  options.hypotheses.max_refined = std::min(options.hypotheses.max_refined, max_refined);
   const Result result = align({image, viewpoint}, target, options, progress);
   if (!result.registered) return std::nullopt;
 

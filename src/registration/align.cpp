@@ -95,8 +95,6 @@ Result align_features(const Features& source, const Features& target, const Tran
   result.voxel_size = target.voxel_size;
   result.source = summary_of(source);
   result.target = summary_of(target);
-  result.source_keypoints = keypoints_in_world(source);
-  result.target_keypoints = keypoints_in_world(target);
 
   clock.start("common frame");
   const PreparedCloud prepared_source(source), prepared_target(target);
@@ -105,6 +103,12 @@ Result align_features(const Features& source, const Features& target, const Tran
   const SearchOutcome outcome = initial ? refine_initial(frame, to_local(*initial, source, target), options, clock)
                                 : options.search == Search::direct ? direct_search(frame, options, clock)
                                                                    : hypotheses_search(frame, coarser, options, clock);
+  const CommonFrame& scale = outcome.settled_coarse ? coarser.frame() : frame;
+  result.loop_voxel_size = scale.target().features.voxel_size;
+  result.source_keypoints = keypoints_in_world(scale.source().features);
+  result.target_keypoints = keypoints_in_world(scale.target().features);
+  result.source.keypoints = result.source_keypoints.size();
+  result.target.keypoints = result.target_keypoints.size();
   clock.start("verdict");
   judge(frame, coarser, outcome, result);
   clock.finish();

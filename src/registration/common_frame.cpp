@@ -15,12 +15,12 @@ constexpr double agreeing_distance = 2.5;                        // voxels
 constexpr std::array<double, 2> mode_radii{4.0, 8.0};            // voxels
 constexpr std::array<double, 4> fit_scales{4.0, 3.0, 2.0, 2.0};  // voxels
 
-}  // namespace
-
-TranslationMode translation_mode(std::span<const PointPair> matches, const Eigen::Matrix3d& rotation, double radius) {
+// The translation with the most others within `radius`, averaged over those.
+Eigen::Vector3d translation_mode(std::span<const PointPair> matches, const Eigen::Matrix3d& rotation, double radius) {
   Points votes;
   for (const PointPair& match : matches) votes.push_back(match.target - rotation * match.source);
-  TranslationMode mode;
+  std::size_t most = 0;
+  Eigen::Vector3d mode = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& vote : votes) {
     std::size_t count = 0;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -30,44 +30,42 @@ TranslationMode translation_mode(std::span<const PointPair> matches, const Eigen
         ++count;
       }
     }
-    if (count > mode.votes) mode = {sum / static_cast<double>(count), count};
+    if (count > most) {
+      most = count;
+      mode = sum / static_cast<double>(count);
+    }
   }
   return mode;
 }
 
+}  // namespace
+
 CommonFrame::CommonFrame(const PreparedCloud& source, const PreparedCloud& target, double descriptor_radius,
                          int threads)
-    : source_(source),
-      target_(target),
-      descriptor_radius_(descriptor_radius),
-      threads_(threads),
-      source_supports_(gather_supports(source.grid, source.keypoints, descriptor_radius)),
-      target_supports_(gather_supports(target.grid, target.keypoints, descriptor_radius)),
-      target_descriptors_(describe_target(Eigen::Matrix3d::Identity())) {}
+    : source_(source), target_(target), descriptor_radius_(descriptor_radius), threads_(threads) {}
 
-std::vector<Descriptor> CommonFrame::describe_source(const Eigen::Matrix3d& axes) const {
-  return describe_in_frame(source_supports_, axes, descriptor_radius_, threads_);
-}
-
-std::vector<Descriptor> CommonFrame::describe_target(const Eigen::Matrix3d& axes) const {
-  return describe_in_frame(target_supports_, axes, descriptor_radius_, threads_);
+const std::vector<Descriptor>& CommonFrame::target_descriptors() {
+  if (!target_descriptors_) {
+    const SupportTable supports = gather_supports(target_.grid, target_.keypoints, descriptor_radius_);
+    target_descriptors_ = describe_in_frame(supports, Eigen::Matrix3d::Identity(), descriptor_radius_, threads_);
+  }
+  return *target_descriptors_;
 }
 
 const std::vector<Descriptor>& CommonFrame::source_descriptors(const Eigen::Matrix3d& target_from_source) {
   for (const Cached& cached : cache_) {
     if (rotation_error_rad(cached.rotation, target_from_source) < reuse_angle_rad) return cached.descriptors;
   }
+  if (!source_supports_) source_supports_ = gather_supports(source_.grid, source_.keypoints, descriptor_radius_);
   // The target's axes, seen in the source: the columns of R^T.
-  cache_.push_back({target_from_source, describe_source(target_from_source.transpose())});
+  cache_.push_back({target_from_source, describe_in_frame(*source_supports_, target_from_source.transpose(),
+                                                          descriptor_radius_, threads_)});
   return cache_.back().descriptors;
 }
 
 std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d& target_from_source) {
-  return mutual_nearest(frame, frame.source_descriptors(target_from_source), frame.target_descriptors());
-}
-
-std::vector<PointPair> mutual_nearest(const CommonFrame& frame, std::span<const Descriptor> source,
-                                      std::span<const Descriptor> target) {
+  const auto& source = frame.source_descriptors(target_from_source);
+  const auto& target = frame.target_descriptors();
   const std::size_t m = source.size(), n = target.size();
   if (m == 0 || n == 0) return {};
   const std::vector<std::uint16_t> distance = feature_distance_matrix(source, 1, target, frame.threads());
@@ -97,7 +95,7 @@ Rematch rematch(CommonFrame& frame, const Transformation& hypothesis, int degree
   for (std::size_t i = 0; i < scales.size(); ++i) scales[i] = fit_scales[i] * voxel_size;
   for (const double radius : mode_radii) {
     Transformation start = hypothesis;
-    start.translation() = translation_mode(best.matches, hypothesis.linear(), radius * voxel_size).translation;
+    start.translation() = translation_mode(best.matches, hypothesis.linear(), radius * voxel_size);
     const auto fit = robust_fit(best.matches, start, scales, degrees_of_freedom);
     if (!fit) continue;
     const std::size_t agreeing = count_inliers(best.matches, *fit, tolerance);

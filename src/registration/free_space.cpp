@@ -12,14 +12,14 @@ constexpr std::size_t max_looks = 1000;
 // beyond its rim, does not contradict, however it is seen.
 constexpr double on_surface = 3.0;  // voxels
 
-// People walk, leaves move, rims are met at a grazing angle: right poses of real scans are contradicted by so much, hardly
-// one by more.
+// People walk, leaves move, rims are met at a grazing angle: right poses of real scans are contradicted by so much,
+// hardly one by more.
 constexpr double tolerated = 0.035;
 constexpr double decades_per_share = 20, most_decades_against = 2;  // beyond what is tolerated
-constexpr double decades_for = 0.5;                                // a direction, where nothing is contradicted
+constexpr double decades_for = 0.5;                                 // a direction, where nothing is contradicted
 constexpr double convincing_view = 100;                             // points in view for half of that
-// A wrong pose is not contradicted either where the voxels are as large as what is in the scene: none for the first number
-// of voxels, all for the second.
+// A wrong pose is not contradicted either where the voxels are as large as what is in the scene: none for the first
+// number of voxels, all for the second.
 constexpr double coarse_voxels = 1000, fine_voxels = 10000;
 
 // Points in view that agree, added to those that are there: few prove little.

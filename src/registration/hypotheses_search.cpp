@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <iterator>
 
 #include "registration/hypotheses.hpp"
 #include "registration/igsp_loop.hpp"
@@ -31,7 +30,10 @@ constexpr std::size_t max_last_steps = 10;
 constexpr std::size_t enough_agreeing = 15;
 constexpr double enough_agreement = 0.6;
 constexpr double rival_inliers = 0.5;    // of the winner's
-constexpr double settled_quality = 1.5;  // decades
+constexpr double settled_quality = 1.5;  // decades, over other poses ...
+constexpr double settled_odds = 0.1;     // of chance: no wrong pose of 174 came below 0.3
+constexpr std::size_t max_hopeful = 16;
+constexpr std::size_t carried = 3;  // from the coarser scale to the finer
 
 std::vector<Hypothesis> propose(CommonFrame& frame, const Options& options) {
   const PreparedCloud &source = frame.source(), &target = frame.target();
@@ -73,22 +75,36 @@ std::vector<Rematch> distinct(std::vector<Rematch> sorted, std::span<const Rival
   return kept;
 }
 
-// Matches every proposal again in its common frame and keeps those with most agreeing matches. After a clear winner
-// only proposals that as many candidates support are looked into: they would be the other poses of a symmetric scene.
-std::vector<Rematch> screen(CommonFrame& frame, std::span<const Hypothesis> hypotheses, std::span<const Rival> ranked,
-                            const Options& options, StageClock& clock) {
-  std::vector<Rematch> screened;
+// Matches every proposal again in its common frame, those with most agreeing matches first. After a clear winner only
+// proposals that as many candidates support are looked into: they would be the other poses of a symmetric scene.
+std::vector<Rematch> match_again(CommonFrame& frame, std::span<const Hypothesis> hypotheses, const Options& options,
+                                 const std::function<void(double)>& tick) {
+  std::vector<Rematch> matched;
   std::size_t winner_inliers = 0;
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-    clock.report(static_cast<double>(i) / static_cast<double>(hypotheses.size()));
+    tick(static_cast<double>(i) / static_cast<double>(hypotheses.size()));
     const bool could_rival = static_cast<double>(hypotheses[i].inliers) >= rival_inliers * winner_inliers;
     if (winner_inliers > 0 && !could_rival) continue;
-    screened.push_back(rematch(frame, hypotheses[i].target_from_source, options.degrees_of_freedom));
-    if (is_clear(screened.back())) winner_inliers = std::max(winner_inliers, hypotheses[i].inliers);
+    matched.push_back(rematch(frame, hypotheses[i].target_from_source, options.degrees_of_freedom));
+    if (is_clear(matched.back())) winner_inliers = std::max(winner_inliers, hypotheses[i].inliers);
   }
-  std::stable_sort(screened.begin(), screened.end(),
-                   [](const Rematch& a, const Rematch& b) { return a.agreeing > b.agreeing; });
-  return distinct(std::move(screened), ranked, frame.target().features.voxel_size, options.hypotheses.max_refined);
+  std::ranges::stable_sort(matched, std::greater(), &Rematch::agreeing);
+  return matched;
+}
+
+// At the finer scale a proposal costs four times as much as at the coarser one, which tells most of the hopeless ones.
+std::vector<Hypothesis> hopeful(CommonFrame& coarser, std::vector<Hypothesis> hypotheses, const Options& options) {
+  if (hypotheses.size() <= max_hopeful) return hypotheses;
+  std::vector<std::pair<std::size_t, std::size_t>> agreeing;  // negative, to sort by; and which
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    agreeing.emplace_back(-rematch(coarser, hypotheses[i].target_from_source, options.degrees_of_freedom).agreeing, i);
+  }
+  std::ranges::sort(agreeing);
+  agreeing.resize(max_hopeful);
+  std::ranges::sort(agreeing, {}, &std::pair<std::size_t, std::size_t>::second);
+  std::vector<Hypothesis> kept;
+  for (const auto& [score, i] : agreeing) kept.push_back(hypotheses[i]);
+  return kept;
 }
 
 LoopOutcome hybrid_loop(CommonFrame& frame, const Transformation& initial, int iterations, const Options& options,
@@ -119,39 +135,42 @@ void refine(const CommonFrame& frame, const Options& options, StageClock& clock,
   outcome.precision = precision_at(surfaces, outcome.target_from_source);
 }
 
-void finish(CommonFrame& frame, const Options& options, StageClock& clock, SearchOutcome& outcome) {
+// The loop at the scale that was searched, the refinement at the finer one.
+void finish(CommonFrame& scale, const CommonFrame& finer, const Options& options, StageClock& clock,
+            SearchOutcome& outcome) {
   clock.start("loop");
   const int iterations = std::min(last_iterations, options.convergence.max_iterations);
-  LoopOutcome loop = hybrid_loop(frame, outcome.target_from_source, iterations, options,
+  LoopOutcome loop = hybrid_loop(scale, outcome.target_from_source, iterations, options,
                                  [&](int iteration) { clock.report(static_cast<double>(iteration) / iterations); });
   outcome.termination = loop.termination;
   outcome.iterations = std::move(loop.iterations);
   if (loop.has_estimate) outcome.target_from_source = loop.target_from_source;
-  refine(frame, options, clock, outcome);
+  refine(finer, options, clock, outcome);
 }
 
 // A few iterations of the loop and a short refinement for each, then the question that the verdict asks as well: how
 // well do the clouds agree at this pose? Best first.
-std::vector<Rival> rank(CommonFrame& frame, std::span<const Rematch> candidates, const Options& options,
+std::vector<Rival> rank(CommonFrame& frame, std::span<const Transformation> candidates, const Options& options,
                         StageClock& clock) {
   const PreparedCloud &source_cloud = frame.source(), &target_cloud = frame.target();
   Surface source(source_cloud.features.points, source_cloud.grid, source_cloud.features.normals);
   Surface target(target_cloud.features.points, target_cloud.grid, target_cloud.features.normals);
   std::vector<Rival> ranked;
-  for (const Rematch& candidate : candidates) {
+  for (const Transformation& candidate : candidates) {
     clock.report(static_cast<double>(ranked.size()) / static_cast<double>(candidates.size()));
-    const LoopOutcome loop = hybrid_loop(frame, candidate.target_from_source, first_iterations, options);
+    const LoopOutcome loop = hybrid_loop(frame, candidate, first_iterations, options);
     const Transformation pose =
         settle(source, target, loop.target_from_source, target_cloud.features.voxel_size, options);
     ranked.push_back({pose, assess_pose(frame, pose)});
   }
+  std::ranges::stable_sort(ranked, std::greater(), [](const Rival& rival) { return rival.assessment.quality; });
   return ranked;
 }
 
 // The best one explains the clouds well, as many of its matches agree as its overlap lets expect, and no other pose
 // explains them nearly as well.
 bool is_settled(std::span<const Rival> ranked, double voxel_size) {
-  if (ranked.empty() || ranked.front().assessment.quality < settled_quality) return false;
+  if (ranked.empty() || ranked.front().assessment.chance_odds() > settled_odds) return false;
   if (ranked.front().assessment.share_of_expected() < 1) return false;
   return std::none_of(ranked.begin() + 1, ranked.end(), [&](const Rival& rival) {
     return rival.assessment.quality > ranked.front().assessment.quality - settled_quality &&
@@ -159,32 +178,48 @@ bool is_settled(std::span<const Rival> ranked, double voxel_size) {
   });
 }
 
-// Proposes and screens at `scale`, refines and ranks at the finer one what is not ranked already.
-void search_at(CommonFrame& scale, CommonFrame& finer, const Options& options, StageClock& clock,
-               std::vector<Rival>& ranked) {
+// Proposes, screens and ranks; together with the best that another scale found.
+std::vector<Rival> search_at(CommonFrame& scale, CommonFrame* coarser, std::span<const Rival> found,
+                             const Options& options, StageClock& clock) {
+  found = found.first(std::min(found.size(), carried));
   clock.start("hypotheses");
-  const std::vector<Hypothesis> hypotheses = propose(scale, options);
+  std::vector<Hypothesis> hypotheses = propose(scale, options);
   clock.start("screening");
-  const std::vector<Rematch> screened = screen(scale, hypotheses, ranked, options, clock);
+  if (coarser) hypotheses = hopeful(*coarser, std::move(hypotheses), options);
+  const std::vector<Rematch> screened =
+      distinct(match_again(scale, hypotheses, options, [&](double share) { clock.report(share); }), found,
+               scale.target().features.voxel_size, options.hypotheses.max_refined);
   clock.start("ranking");
-  std::ranges::move(rank(finer, screened, options, clock), std::back_inserter(ranked));
-  std::ranges::stable_sort(ranked, std::greater(), [](const Rival& rival) { return rival.assessment.quality; });
+  std::vector<Transformation> candidates;
+  for (const Rival& pose : found) candidates.push_back(pose.target_from_source);
+  for (const Rematch& pose : screened) candidates.push_back(pose.target_from_source);
+  return rank(scale, candidates, options, clock);
+}
+
+SearchOutcome finished(std::vector<Rival> ranked, CommonFrame& scale, const CommonFrame& finer, const Options& options,
+                       StageClock& clock) {
+  SearchOutcome outcome;
+  if (ranked.empty()) return outcome;
+  outcome.has_estimate = true;
+  outcome.target_from_source = ranked.front().target_from_source;
+  outcome.rivals.assign(ranked.begin() + 1, ranked.end());
+  outcome.settled_coarse = &scale != &finer;
+  finish(scale, finer, options, clock, outcome);
+  return outcome;
 }
 
 }  // namespace
 
 SearchOutcome hypotheses_search(CommonFrame& frame, CoarserScale& coarser, const Options& options, StageClock& clock) {
-  std::vector<Rival> ranked;
-  if (coarser.is_there()) search_at(coarser.frame(), frame, options, clock, ranked);
-  if (!is_settled(ranked, frame.target().features.voxel_size)) search_at(frame, frame, options, clock, ranked);
-  SearchOutcome outcome;
-  if (ranked.empty()) return outcome;
-
-  outcome.has_estimate = true;
-  outcome.target_from_source = ranked.front().target_from_source;
-  outcome.rivals.assign(ranked.begin() + 1, ranked.end());
-  finish(frame, options, clock, outcome);
-  return outcome;
+  std::vector<Rival> found;
+  if (coarser.is_there()) {
+    found = search_at(coarser.frame(), nullptr, {}, options, clock);
+    if (is_settled(found, coarser.frame().target().features.voxel_size)) {
+      return finished(std::move(found), coarser.frame(), frame, options, clock);
+    }
+  }
+  return finished(search_at(frame, coarser.is_there() ? &coarser.frame() : nullptr, found, options, clock), frame,
+                  frame, options, clock);
 }
 
 SearchOutcome refine_initial(CommonFrame& frame, const Transformation& initial, const Options& options,
@@ -192,7 +227,7 @@ SearchOutcome refine_initial(CommonFrame& frame, const Transformation& initial, 
   SearchOutcome outcome;
   outcome.has_estimate = true;
   outcome.target_from_source = initial;
-  finish(frame, options, clock, outcome);
+  finish(frame, frame, options, clock, outcome);
   return outcome;
 }
 

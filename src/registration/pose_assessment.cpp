@@ -54,8 +54,8 @@ PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from
   assessment.agreeing_matches =
       count_inliers(matches, target_from_source, agreeing_distance * frame.target().features.voxel_size);
   assessment.free_space = free_space(frame.source(), frame.target(), target_from_source);
-  assessment.quality = quality_of(assessment) +
-                       free_space_evidence(assessment.free_space, frame.source(), frame.target());
+  assessment.quality =
+      quality_of(assessment) + free_space_evidence(assessment.free_space, frame.source(), frame.target());
   return assessment;
 }
 

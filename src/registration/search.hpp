@@ -22,16 +22,17 @@ struct SearchOutcome {
   bool has_estimate = false;
   Transformation target_from_source = Transformation::Identity();
   std::vector<IterationRecord> iterations;
-  std::vector<Rival> rivals;  ///< other poses, best first
-  Precision precision;        ///< in the target's local coordinates
+  std::vector<Rival> rivals;    ///< other poses, best first
+  bool settled_coarse = false;  ///< at the coarser scale, which the rivals are assessed at
+  Precision precision;          ///< in the target's local coordinates
 };
 
 /// The paper: Algorithm 1 from feature distance alone.
 SearchOutcome direct_search(const CommonFrame& frame, const Options& options, StageClock& clock);
 
-/// Hypotheses from geometric consistency, at the coarser scale first; screened there in a common frame, refined and
-/// ranked at the finer scale. Where that settles nothing, the finer scale is searched as well. The best one through the
-/// hybrid loop to the end and, if asked for, point-to-plane refinement.
+/// Hypotheses from geometric consistency, screened in a common frame, refined and ranked; at the coarser scale first
+/// and, where that does not settle it, at the finer one, where the best of the coarser are ranked as well. The best one
+/// through the hybrid loop to the end and, if asked for, point-to-plane refinement.
 SearchOutcome hypotheses_search(CommonFrame& frame, CoarserScale& coarser, const Options& options, StageClock& clock);
 
 /// From an initial guess: no search, only the hybrid loop and the refinement; the verdict tells whether it held.

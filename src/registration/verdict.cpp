@@ -74,9 +74,8 @@ void name_what_the_target_leaves_free(const CommonFrame& frame, Result& result) 
 }
 
 // Other poses, best first, each once: without those that say the same as the winner or as a better rival.
-std::vector<Rival> true_rivals(const CommonFrame& frame, const SearchOutcome& outcome) {
+std::vector<Rival> true_rivals(const SearchOutcome& outcome, double v) {
   std::vector<Rival> rivals;
-  const double v = frame.target().features.voxel_size;
   for (const Rival& rival : outcome.rivals) {
     const auto repeated_by = [&](const Transformation& pose) {
       return same_pose(rival.target_from_source, pose, Eigen::Vector3d::Zero(), v);
@@ -145,14 +144,16 @@ void judge(CommonFrame& frame, CoarserScale& coarser, const SearchOutcome& outco
     name_what_the_target_leaves_free(frame, result);
     return;
   }
-  const std::vector<Rival> rivals = true_rivals(frame, outcome);
-  Judgement judgement = judgement_of(frame, outcome.target_from_source, rivals);
-  result.evidence.voxel_size = frame.target().features.voxel_size;
+  CommonFrame& first = outcome.settled_coarse ? coarser.frame() : frame;
+  const std::vector<Rival> rivals = true_rivals(outcome, first.target().features.voxel_size);
+  Judgement judgement = judgement_of(first, outcome.target_from_source, rivals);
+  result.evidence.voxel_size = first.target().features.voxel_size;
   if (judgement.confidence < 0.5 && coarser.is_there()) {
-    Judgement other = judgement_of(coarser.frame(), outcome.target_from_source, assessed_at(coarser.frame(), rivals));
+    CommonFrame& second = outcome.settled_coarse ? frame : coarser.frame();
+    Judgement other = judgement_of(second, outcome.target_from_source, assessed_at(second, rivals));
     if (other.confidence > judgement.confidence) {
       judgement = std::move(other);
-      result.evidence.voxel_size = coarser.frame().target().features.voxel_size;
+      result.evidence.voxel_size = second.target().features.voxel_size;
     }
   }
 

@@ -10,15 +10,15 @@ namespace igsp {
 namespace {
 
 constexpr int slot_bits = 18;
-constexpr double blocks_across = 16;  // along the diagonal
-constexpr double min_layers = 4;      // of blocks, across the thinnest side
+constexpr double blocks_across = 16;   // along the diagonal
+constexpr double min_layers = 4;       // of blocks, across the thinnest side
 constexpr double thinnest = 1.0 / 16;  // side, of the diagonal: a flat surface alone looks like dense noise
-constexpr double margin = 0.1;        // of the hull's width: what it is made of, walls mostly, does not count
+constexpr double margin = 0.1;         // of the hull's width: what it is made of, walls mostly, does not count
 constexpr std::size_t min_blocks = 20;
 constexpr double emptiest = 0.25;        // of the blocks: surfaces leave that many empty ...
 constexpr double below_the_mean = 0.67;  // ... and this quantile of a Poisson distribution lies so many sigmas below
-constexpr double sigmas = 3.0;        // of the noise's Poisson distribution
-constexpr double min_kept = 0.6;      // what is most of the cloud is no noise
+constexpr double sigmas = 3.0;           // of the noise's Poisson distribution
+constexpr double min_kept = 0.6;         // what is most of the cloud is no noise
 constexpr double max_kept = 0.98;  // less noise does no harm, and the lone far points of a clean scan are worth keeping
 
 // The number of points in each block inside the hull.

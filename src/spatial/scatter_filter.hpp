@@ -10,8 +10,8 @@ namespace igsp {
 /// Side of the cells that tell surfaces from scattered noise [voxels]: a surface fills about nine voxels of one.
 inline constexpr double scatter_cell = 3.0;
 
-/// The density of noise that is scattered over the convex hull (dust, multipath, artificial outliers) [points per unit of
-/// volume]. Surfaces leave a quarter and more of the hull's blocks empty, noise does not: from the quartile of the
+/// The density of noise that is scattered over the convex hull (dust, multipath, artificial outliers) [points per unit
+/// of volume]. Surfaces leave a quarter and more of the hull's blocks empty, noise does not: from the quartile of the
 /// points in a block. 0 for most clouds.
 double scatter_density(PointView cloud, const Bounds& bounds);
 

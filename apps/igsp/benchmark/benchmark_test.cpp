@@ -202,7 +202,7 @@ TEST(JudgeCase, NoTruthNoOverlapNoEstimate) {
 TEST(JudgeMatches, TheLastIterationAtTheTruth) {
   const Transformation truth = rotation_z(0.7, {5, 6, 7});
   Result result;
-  result.voxel_size = 2.0;  // with r_k of 3 voxels the radius is 2
+  result.loop_voxel_size = 2.0;  // with r_k of 3 voxels the radius is 2
   result.options.keypoints.suppression_radius = 3.0;
   EXPECT_FALSE(judge_matches(result, truth));
   result.source_keypoints = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {0, 0, 10}};

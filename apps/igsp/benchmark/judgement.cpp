@@ -39,7 +39,7 @@ Judgement judge_case(const BenchmarkCase& one, const Transformation& truth, cons
 
 std::optional<MatchQuality> judge_matches(const Result& result, const Transformation& truth) {
   if (result.iterations.empty()) return std::nullopt;
-  const double radius = result.options.keypoints.suppression_radius / 3.0 * result.voxel_size;
+  const double radius = result.options.keypoints.suppression_radius / 3.0 * result.loop_voxel_size;
   return match_quality(result.iterations.back().correspondences, result.source_keypoints, result.target_keypoints,
                        truth, radius);
 }

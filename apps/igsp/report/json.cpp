@@ -172,6 +172,7 @@ Json align_report(const Result& result, const std::vector<Diagnosis>& diagnosis,
   json["runner_up"] = to_json(result.runner_up);
   json["precision"] = to_json(result.precision);
   json["voxel_size"] = result.voxel_size;
+  json["loop_voxel_size"] = result.loop_voxel_size;
   json["source"] = to_json(source, result.source);
   json["target"] = to_json(target, result.target);
   json["keypoints"] = {{"source", result.source.keypoints}, {"target", result.target.keypoints}};
