@@ -83,8 +83,8 @@ MUTANTS = [
     ("registration/surface_contact.cpp", "touching = 1.0;", "touching = 4.0;", "what touches"),
     ("registration/surface_contact.cpp", "touching_weight += weight;", "touching_weight += 1.0;", "weights of contact"),
     ("registration/surface_contact.cpp", "* n + 2) / (n + 4)", "* n) / n", "few places prove little"),
-    ("registration/verdict.cpp", "1.0 / (1.0 + odds(-judgement.pose.quality) + judgement.rival_odds)", "1.0 / (1.0 + odds(judgement.pose.quality) + judgement.rival_odds)", "sign of the quality"),
-    ("registration/verdict.cpp", "1.0 / (1.0 + odds(-judgement.pose.quality) + judgement.rival_odds)", "1.0 / (1.0 + odds(-judgement.pose.quality))", "rivals"),
+    ("registration/pose_assessment.cpp", "std::pow(10.0, demanded - quality)", "std::pow(10.0, quality - demanded)", "sign of the quality"),
+    ("registration/verdict.cpp", "1.0 / (1.0 + judgement.pose.chance_odds() + judgement.rival_odds)", "1.0 / (1.0 + judgement.pose.chance_odds())", "rivals"),
     ("registration/verdict.cpp", "std::min(confidence, 0.1)", "confidence", "free directions"),
     ("registration/verdict.cpp", "result.confidence >= 0.5", "result.confidence >= 0.05", "level of the verdict"),
 ]
