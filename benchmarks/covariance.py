@@ -4,7 +4,7 @@ registered from the true pose; the error of the pose, squared and normalised by 
 Prints a row a scene: draws that were registered, median of the normalised squared error over that of chi-square (1 is right,
 more is too sure), and the share of draws inside of the stated 95 % ellipsoid. With --csv the single draws as well.
 
-usage: covariance.py IGSP [--draws 200] [--points 10000] [--scenes park,indoor,object] [--dof 6] [--csv FILE]
+usage: covariance.py IGSP [--draws 200] [--points 40000] [--scenes park,indoor,object] [--dof 6] [--csv FILE]
 """
 import argparse
 import csv
@@ -20,7 +20,7 @@ from scipy.stats import chi2
 
 # Scene: standard deviation of the noise along the ray [m], as the simulated scanners have it.
 NOISE = {"park": 0.01, "indoor": 0.003, "object": 0.0001}
-DENSE = 20  # times as many points as are drawn, so that two draws share few
+DENSE = 5  # times as many points as are drawn, so that two draws share few
 
 
 def read_ply(path):
@@ -82,7 +82,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("igsp", type=Path)
     parser.add_argument("--draws", type=int, default=200)
-    parser.add_argument("--points", type=int, default=10000)
+    parser.add_argument("--points", type=int, default=40000)
     parser.add_argument("--scenes", default="park,indoor,object")
     parser.add_argument("--dof", type=int, default=6, choices=[4, 6])
     parser.add_argument("--csv", type=Path)
@@ -94,6 +94,9 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             squares = squares_of(arguments.igsp.resolve(), scene, arguments, Path(folder))
         limit = chi2.ppf(0.95, arguments.dof)
+        if len(squares) < 20:
+            print(f"| {scene} | {arguments.points} | {len(squares)} of {arguments.draws} | too few to say | | |", flush=True)
+            continue
         print(f"| {scene} | {arguments.points} | {len(squares)} of {arguments.draws} | "
               f"{np.median(squares) / chi2.ppf(0.5, arguments.dof):.2f} | "
               f"{100 * np.mean(squares < limit):.0f} % | {np.quantile(squares, 0.95) / limit:.2f} |", flush=True)
