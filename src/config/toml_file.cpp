@@ -93,8 +93,8 @@ bool is_nameless_section(std::string_view line) {
   return !(std::isalnum(letter) || std::string_view("_-\"']").find(line[name]) != std::string_view::npos);
 }
 
-// Beyond ASCII outside of strings and comments: no name has that, and the parser's tables of letters have gaps into which
-// it falls.
+// Beyond ASCII outside of strings and comments: no name has that, and the parser's tables of letters have gaps into
+// which it falls.
 bool has_foreign_letter(std::string_view line) {
   char quote = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
