@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from . import _las_layout
-from ._cloud import FormatError, Metadata, PathLike, Points, Scan, Selection, require
+from . import _las_layout, _laz_layout
+from ._cloud import FormatError, Metadata, PathLike, Points, Scan, Selection, faults_of_package, require
 from ._las_layout import Layout
+
+BYTES_AT_ONCE = 1 << 28  # of records, before a single one of them has been seen
 
 
 def describe(path: PathLike, layout: Layout, metadata: Metadata) -> None:
@@ -39,22 +41,23 @@ def read_records(
     laspy = require("laspy", path, "las")
     if layout.compressed:
         require("lazrs", path, "las")
+        _laz_layout.check(path, layout)
+    points_per_chunk = min(points_per_chunk, max(1, BYTES_AT_ONCE // layout.record_length))
     fields = laspy.DecompressionSelection.all()
     if coordinates_only:  # spares LAZ of point formats 6 to 10 the decompression of the rest
         fields = laspy.DecompressionSelection.base().decompress_z()
     total = 0
-    try:
-        with laspy.open(
+    with (
+        faults_of_package(path, lambda: f"after point {total} of {layout.point_count}"),
+        laspy.open(
             path, laz_backend=laspy.LazBackend.LazrsParallel, read_evlrs=False, decompression_selection=fields
-        ) as reader:
-            while total < layout.point_count:
-                records = reader.read_points(points_per_chunk).array
-                if not len(records):
-                    break
-                total += len(records)
-                yield records
-    except (laspy.LaspyException, RuntimeError, ValueError, OverflowError) as error:
-        fault = f"after point {total} of {layout.point_count}: {error}: cut short or damaged?"
-        raise FormatError(path, fault) from error
+        ) as reader,
+    ):
+        while total < layout.point_count:
+            records = reader.read_points(points_per_chunk).array
+            if not len(records):
+                break
+            total += len(records)
+            yield records
     if total != layout.point_count:
         raise FormatError(path, f"the file ends after {total} of {layout.point_count} points")
