@@ -26,7 +26,7 @@ double quality_of(const PoseAssessment& pose) {
 
 // Rooms are like rooms: their wrong poses overlap by a half and more, with contact and matches that would carry a right
 // pose of a third. Right ones of that overlap have more of both.
-constexpr double undemanding_overlap = 0.4, decades_per_overlap = 3.0;
+constexpr double undemanding_overlap = 0.4, demanding_overlap = 0.7, decades_per_overlap = 3.0;
 
 }  // namespace
 
@@ -41,7 +41,8 @@ double PoseAssessment::share_of_expected() const {
 }
 
 double PoseAssessment::chance_odds() const {
-  const double demanded = decades_per_overlap * std::max(0.0, overlap() - undemanding_overlap);
+  const double demanded =
+      decades_per_overlap * (std::clamp(overlap(), undemanding_overlap, demanding_overlap) - undemanding_overlap);
   return std::pow(10.0, demanded - quality);
 }
 

@@ -9,6 +9,7 @@
 #include "registration/hypotheses.hpp"
 #include "registration/pose_assessment.hpp"
 #include "registration/precision.hpp"
+#include "registration/surface_contact.hpp"
 
 namespace igsp {
 namespace {
@@ -158,8 +159,10 @@ void judge(CommonFrame& frame, CoarserScale& coarser, const SearchOutcome& outco
   }
 
   const PoseAssessment& pose = judgement.pose;
-  result.overlap_source = pose.source_on_target.overlap;
-  result.overlap_target = pose.target_on_source.overlap;
+  // Always at the finer scale, so that it means the same whichever scale the verdict was asked at.
+  const Transformation& target_from_source = outcome.target_from_source;
+  result.overlap_source = surface_contact(frame.source(), frame.target(), target_from_source).overlap;
+  result.overlap_target = surface_contact(frame.target(), frame.source(), target_from_source.inverse()).overlap;
   result.rmse = outcome.precision.inlier_rmse;
   result.precision = outcome.precision;
   result.precision.free_directions = judgement.free_directions;
