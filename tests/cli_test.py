@@ -2,6 +2,7 @@
 import json
 import os
 import pty
+import re
 import signal
 import subprocess
 import sys
@@ -192,6 +193,28 @@ class Align(CommandTest):
         self.assertNotIn("not used", run.stderr)
         report = json.loads((self.folder / "r.json").read_text())
         self.assertEqual(report["source"]["viewpoint"], [-5.5, 0, 0])
+
+    def test_auto_takes_the_viewpoint_from_the_file(self):
+        self.igsp("align", self.source, self.target, "--report", "r.json", "-o", "a.ply", "--transform", "T.txt")
+        report = json.loads((self.folder / "r.json").read_text())
+        for cloud in ["source", "target"]:  # the simulation writes it
+            self.assertEqual(report[cloud]["viewpoint"], [0, 0, 0])
+            self.assertEqual(report[cloud]["viewpoint_because"], "the file says so")
+        moved = self.igsp("info", "a.ply").stdout
+        words = re.search(r"scanner +at (\S+) (\S+) (\S+): the file says so\n", moved).groups()
+        np.testing.assert_allclose([float(w) for w in words], np.loadtxt(self.folder / "T.txt")[:3, 3], rtol=1e-6)
+        self.igsp("align", self.source, self.target, "-o", "a.pcd")
+        self.assertIn("the file says so", self.igsp("info", "a.pcd").stdout)
+
+    def test_auto_believes_the_origin_where_the_cloud_agrees(self):
+        points = read_ply(self.source)[0]
+        silent = self.igsp("info", self.cloud("silent.ply", points)).stdout
+        self.assertRegex(silent, r"scanner +at 0 0 0: believed, though the file does not say it: from its origin "
+                                 r"\d\.\d % of the points are hidden behind others, from places about it \d+")
+        shifted = self.igsp("info", self.cloud("shifted.ply", points + [5, 0, 0])).stdout
+        self.assertIn("scanner               unknown: the file does not say, and", shifted)
+        fused = np.vstack([points + [4, 0, 0], points @ np.diag([-1, -1, 1]) - [4, 0, 0]])
+        self.assertIn("scanner               unknown: ", self.igsp("info", self.cloud("fused.ply", fused)).stdout)
 
     def test_survey_coordinates_are_written_as_doubles(self):
         offset = np.array([500000.0, 5000000.0, 300.0])

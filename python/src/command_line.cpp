@@ -72,7 +72,8 @@ cli::ForeignCloud open(nb::handle formats, const fs::path& path) {
         .format = name,
         .next_chunk = [chunks] { return next_chunk(*chunks); },
         .dropped =
-            [chunks] { return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("dropped")); }); }};
+            [chunks] { return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("dropped")); }); },
+        .viewpoint = [] { return std::nullopt; }};
   });
 }
 

@@ -51,4 +51,8 @@ std::size_t CloudFile::declared_points() const {
   return own ? own->declared_points() : 0;
 }
 
+std::optional<Eigen::Vector3d> CloudFile::viewpoint() const {
+  return std::visit([](const auto& reader) { return reader.viewpoint(); }, reader_);
+}
+
 }  // namespace igsp::cli

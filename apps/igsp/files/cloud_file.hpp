@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -22,6 +23,8 @@ class CloudFile {
   std::string format() const;           ///< for people: "PLY, ascii"
   std::size_t dropped() const;          ///< non-finite points met so far
   std::size_t declared_points() const;  ///< 0 where the format or its reader does not say
+  /// Where the file says that its scanner stood, after the last chunk: none for a file of several scans.
+  std::optional<Eigen::Vector3d> viewpoint() const;
 
  private:
   std::variant<PointReader, ForeignCloud> reader_;

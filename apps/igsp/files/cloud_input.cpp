@@ -54,12 +54,13 @@ CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points,
   }
   cloud.points = kept.take();
   cloud.dropped = reader.dropped();
+  cloud.declared_viewpoint = reader.viewpoint();
   check_extent(cloud);
   return cloud;
 }
 
 void settle_viewpoint(CloudInput& cloud, const ViewpointRequest& request) {
-  cloud.viewpoint = find_viewpoint(cloud.points, request);
+  cloud.viewpoint = find_viewpoint(cloud.points, request, cloud.declared_viewpoint);
 }
 
 Points read_centroids(const CloudInput& cloud, double voxel_size, std::string_view stage,

@@ -20,6 +20,7 @@ struct CloudInput {
   std::size_t total = 0;       ///< finite points in the file
   std::size_t dropped = 0;     ///< points left out for a coordinate that is not finite
   Bounds bounds;               ///< of all points
+  std::optional<Eigen::Vector3d> declared_viewpoint;  ///< what the file says
   ViewpointFinding viewpoint;  ///< where the scanner stood; unknown until settle_viewpoint
   bool whole() const { return points.size() == total; }
   Scan scan() const { return {points, viewpoint.viewpoint}; }

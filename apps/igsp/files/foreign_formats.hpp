@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "igsp/point_cloud.hpp"
@@ -13,6 +14,7 @@ struct ForeignCloud {
   std::string format;  ///< what people call it, such as "LAZ"
   ChunkSource next_chunk;
   std::function<std::size_t()> dropped;  ///< non-finite points met so far
+  std::function<std::optional<Eigen::Vector3d>()> viewpoint;  ///< what the file says, after its last chunk
 };
 
 /// Files that igsp cannot read or write by itself, and who can: the Python package fills this, the plain command has

@@ -42,6 +42,11 @@ double spacing_of(PointView cloud, const Bounds& bounds, double voxel_size) {
   return unit * distances[distances.size() / 2];
 }
 
+std::string viewpoint_text(const ViewpointFinding& found) {
+  if (!found.viewpoint) return found.reason;
+  return fmt::format("at {:.10g}: {}", fmt::join(found.viewpoint->begin(), found.viewpoint->end(), " "), found.reason);
+}
+
 void print_info(const CloudInput& cloud) {
   const Eigen::Vector3d extent = cloud.bounds.max - cloud.bounds.min;
   const double magnitude = cloud.bounds.min.cwiseAbs().cwiseMax(cloud.bounds.max.cwiseAbs()).maxCoeff();
@@ -60,6 +65,7 @@ void print_info(const CloudInput& cloud) {
                            std::ldexp(magnitude, -24));
   std::cout << fmt::format("  spacing               {:.4g}{}\n", spacing,
                            cloud.whole() ? "" : " (of the points kept in memory)");
+  std::cout << fmt::format("  scanner               {}\n", viewpoint_text(cloud.viewpoint));
   std::cout << fmt::format("  suggested voxel size  {:.4g}\n", voxel_size);
 }
 
@@ -71,8 +77,9 @@ struct InfoSettings {
 int run_info(const InfoSettings& settings) {
   for (const fs::path& path : settings.paths) {
     ProgressBar bar(true);
-    const CloudInput cloud = read_cloud(path, kept_points, "read", bar.callback(), settings.read);
+    CloudInput cloud = read_cloud(path, kept_points, "read", bar.callback(), settings.read);
     bar.finish();
+    settle_viewpoint(cloud, {});
     print_info(cloud);
   }
   return exit_registered;

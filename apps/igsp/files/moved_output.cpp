@@ -42,7 +42,9 @@ void write_coordinates(const CloudInput& source, const fs::path& output, const T
     for (Eigen::Vector3d& point : moved) point = target_from_source * point;
     return moved;
   };
-  write_points(output, source.total, chunks, {.format = format_of(output), .single_precision = floats});
+  WriteOptions options{.single_precision = floats};
+  if (source.declared_viewpoint) options.viewpoint = target_from_source * *source.declared_viewpoint;
+  write_points(output, source.total, chunks, options);
 }
 
 /// What is lost, and which name would keep it; nothing where the source holds no more.
