@@ -55,4 +55,9 @@ std::optional<Eigen::Vector3d> CloudFile::viewpoint() const {
   return std::visit([](const auto& reader) { return reader.viewpoint(); }, reader_);
 }
 
+std::size_t CloudFile::scans() const {
+  const ForeignCloud* foreign = std::get_if<ForeignCloud>(&reader_);
+  return foreign ? foreign->scans() : 1;
+}
+
 }  // namespace igsp::cli

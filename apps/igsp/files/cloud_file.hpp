@@ -23,8 +23,9 @@ class CloudFile {
   std::string format() const;           ///< for people: "PLY, ascii"
   std::size_t dropped() const;          ///< non-finite points met so far
   std::size_t declared_points() const;  ///< 0 where the format or its reader does not say
-  /// Where the file says that its scanner stood, after the last chunk: none for a file of several scans.
-  std::optional<Eigen::Vector3d> viewpoint() const;
+  // After the last chunk:
+  std::optional<Eigen::Vector3d> viewpoint() const;  ///< where the file says that its scanner stood
+  std::size_t scans() const;                         ///< of which the points are, as far as the file says it
 
  private:
   std::variant<PointReader, ForeignCloud> reader_;

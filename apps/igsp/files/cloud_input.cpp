@@ -55,11 +55,16 @@ CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points,
   cloud.points = kept.take();
   cloud.dropped = reader.dropped();
   cloud.declared_viewpoint = reader.viewpoint();
+  cloud.scans = reader.scans();
   check_extent(cloud);
   return cloud;
 }
 
 void settle_viewpoint(CloudInput& cloud, const ViewpointRequest& request) {
+  if (request.kind == ViewpointRequest::Kind::automatic && cloud.scans > 1) {
+    cloud.viewpoint = {{}, fmt::format("unknown: {} scans in one file, each with a viewpoint of its own", cloud.scans), ""};
+    return;
+  }
   cloud.viewpoint = find_viewpoint(cloud.points, request, cloud.declared_viewpoint);
 }
 

@@ -21,6 +21,7 @@ struct CloudInput {
   std::size_t dropped = 0;     ///< points left out for a coordinate that is not finite
   Bounds bounds;               ///< of all points
   std::optional<Eigen::Vector3d> declared_viewpoint;  ///< what the file says
+  std::size_t scans = 1;       ///< in the file
   ViewpointFinding viewpoint;  ///< where the scanner stood; unknown until settle_viewpoint
   bool whole() const { return points.size() == total; }
   Scan scan() const { return {points, viewpoint.viewpoint}; }

@@ -14,7 +14,9 @@ struct ForeignCloud {
   std::string format;  ///< what people call it, such as "LAZ"
   ChunkSource next_chunk;
   std::function<std::size_t()> dropped;  ///< non-finite points met so far
-  std::function<std::optional<Eigen::Vector3d>()> viewpoint;  ///< what the file says, after its last chunk
+  // After the last chunk:
+  std::function<std::optional<Eigen::Vector3d>()> viewpoint;  ///< where the file says that the scanner stood
+  std::function<std::size_t()> scans;                         ///< how many the points are of
 };
 
 /// Files that igsp cannot read or write by itself, and who can: the Python package fills this, the plain command has

@@ -62,6 +62,7 @@ class ChunkReader(Iterator[Points]):
         self.metadata = Metadata(_known_extension(path)[1:])
         self.dropped = 0
         """Points met so far that were left out because a coordinate is not finite."""
+        self._selection = selection
         reader = _READERS[_known_extension(path)]
         self._chunks: Iterator[Points] = reader.read(path, selection, self.metadata, points_per_chunk)
 
@@ -74,6 +75,28 @@ class ChunkReader(Iterator[Points]):
             if len(points):
                 return points
         raise StopIteration
+
+
+    @property
+    def scan_count(self) -> int:
+        """How many scans of the file the points are of, as far as it has been read."""
+        return len(self._scans_read())
+
+    @property
+    def viewpoint(self) -> Points | None:
+        """(3,): where the scanner stood in the frame of the points, once the last chunk has been read.
+
+        None if the file does not say it (no pose, or one that moves nothing), and for several scans.
+        """
+        scans = self._scans_read()
+        pose = scans[0].pose if len(scans) == 1 else None
+        if pose is None or (pose == np.eye(4)).all():
+            return None
+        return pose[:3, 3].copy() if self._selection.apply_pose else np.zeros(3)
+
+    def _scans_read(self) -> list[Scan]:
+        scans = enumerate(self.metadata.scans)
+        return [scan for index, scan in scans if self._selection.includes(index) and scan.point_count > 0]
 
 
 def read_chunks(
@@ -106,7 +129,9 @@ def read_cloud(path: PathLike, *, scan: int | None = None, apply_pose: bool = Tr
         points[count : count + len(chunk)] = chunk
         count += len(chunk)
     points.resize((count, 3), refcheck=False)
-    return Cloud(points, reader.metadata.format, reader.dropped, reader.metadata)
+    return Cloud(
+        points, reader.metadata.format, reader.dropped, reader.metadata, reader.viewpoint, reader.scan_count
+    )
 
 
 def read_metadata(path: PathLike) -> Metadata:

@@ -67,6 +67,8 @@ class Cloud:
     format: str
     dropped: int  # points left out because a coordinate is not finite
     metadata: Metadata
+    viewpoint: Points | None = None  # (3,): where the scanner stood in the frame of the points, if the file says it
+    scan_count: int = 1  # of which the points are: several have no viewpoint in common
 
 
 @dataclass(frozen=True)
