@@ -43,6 +43,8 @@ def load_cloud(path: Path, stacklevel: int = 5) -> LoadedCloud:
     if formats.is_supported(name) and not name.lower().endswith(".pts"):
         cloud = formats.read_cloud(name)
         points, dropped, viewpoint, scans = cloud.points, cloud.dropped, cloud.viewpoint, cloud.scan_count
+        if cloud.note:
+            warnings.warn(f"{name}: {cloud.note}", stacklevel=stacklevel)
     else:
         points, dropped, viewpoint = _core.read_points(name)
     if dropped:

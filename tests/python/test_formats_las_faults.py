@@ -81,3 +81,15 @@ def test_file_that_shrinks_while_it_is_read(tmp_path: Path) -> None:
     source.write_bytes(content[: start + 20_000 * record_length])
     with pytest.raises(formats.FormatError, match=r"source\.las: the file ends after 20000 of 50000 points"):
         list(reader)
+
+
+@pytest.mark.parametrize(("offset", "value"), [(0, 1), (34, 77), (38, 99)])  # compressor, an item, its version
+def test_variants_of_laz_that_the_codec_lacks_are_not_called_damaged(tmp_path: Path, offset: int, value: int) -> None:
+    source = tmp_path / "source.laz"
+    make_las(random_points(50), 1).write(source)
+    content = bytearray(source.read_bytes())
+    record = content.index(b"laszip encoded") - 2 + 54
+    struct.pack_into("<H", content, record + offset, value)
+    source.write_bytes(content)
+    with pytest.raises(formats.FormatError, match=r"source\.laz: this variant of LAZ is not supported \(.*\): write it"):
+        formats.read_cloud(source)

@@ -26,6 +26,7 @@ class CloudFile {
   // After the last chunk:
   std::optional<Eigen::Vector3d> viewpoint() const;  ///< where the file says that its scanner stood
   std::size_t scans() const;                         ///< of which the points are, as far as the file says it
+  std::string note() const;                          ///< what was left out beside `dropped`; mostly empty
 
  private:
   std::variant<PointReader, ForeignCloud> reader_;

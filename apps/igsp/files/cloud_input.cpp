@@ -56,6 +56,7 @@ CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points,
   cloud.dropped = reader.dropped();
   cloud.declared_viewpoint = reader.viewpoint();
   cloud.scans = reader.scans();
+  cloud.note = reader.note();
   check_extent(cloud);
   return cloud;
 }

@@ -17,6 +17,7 @@ struct ForeignCloud {
   // After the last chunk:
   std::function<std::optional<Eigen::Vector3d>()> viewpoint;  ///< where the file says that the scanner stood
   std::function<std::size_t()> scans;                         ///< how many the points are of
+  std::function<std::string()> note;                          ///< what was left out, in words; mostly empty
 };
 
 /// Files that igsp cannot read or write by itself, and who can: the Python package fills this, the plain command has

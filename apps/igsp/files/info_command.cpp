@@ -56,6 +56,7 @@ void print_info(const CloudInput& cloud) {
   std::cout << fmt::format("  format                {}\n", cloud.format);
   std::cout << fmt::format("  points                {}{}\n", cloud.total,
                            cloud.dropped > 0 ? fmt::format(" and {} dropped, not finite", cloud.dropped) : "");
+  if (!cloud.note.empty()) std::cout << fmt::format("  note                  {}\n", cloud.note);
   std::cout << fmt::format("  extent                {:.6g} x {:.6g} x {:.6g}\n", extent.x(), extent.y(), extent.z());
   std::cout << fmt::format("  from                  {:.10g}\n",
                            fmt::join(cloud.bounds.min.data(), cloud.bounds.min.data() + 3, " "));

@@ -78,6 +78,16 @@ class ChunkReader(Iterator[Points]):
 
 
     @property
+    def note(self) -> str:
+        """What was left out beside `dropped`, in words; mostly empty."""
+        if not self.metadata.noise:
+            return ""
+        return (
+            f"left out {self.metadata.noise} points that are classified as noise (7, 18) or withheld; "
+            "igsp.formats.read_cloud(path, keep_noise=True) keeps them"
+        )
+
+    @property
     def scan_count(self) -> int:
         """How many scans of the file the points are of, as far as it has been read."""
         return len(self._scans_read())
@@ -100,13 +110,20 @@ class ChunkReader(Iterator[Points]):
 
 
 def read_chunks(
-    path: PathLike, points_per_chunk: int = POINTS_PER_CHUNK, *, scan: int | None = None, apply_pose: bool = True
+    path: PathLike,
+    points_per_chunk: int = POINTS_PER_CHUNK,
+    *,
+    scan: int | None = None,
+    apply_pose: bool = True,
+    keep_noise: bool = False,
 ) -> ChunkReader:
     """Iterates over the points in arrays of at most `points_per_chunk` rows, (N, 3) float64; see `read_cloud`."""
-    return ChunkReader(path, points_per_chunk, Selection(scan, apply_pose))
+    return ChunkReader(path, points_per_chunk, Selection(scan, apply_pose, keep_noise))
 
 
-def read_cloud(path: PathLike, *, scan: int | None = None, apply_pose: bool = True) -> Cloud:
+def read_cloud(
+    path: PathLike, *, scan: int | None = None, apply_pose: bool = True, keep_noise: bool = False
+) -> Cloud:
     """Reads the points of a file.
 
     Args:
@@ -114,13 +131,15 @@ def read_cloud(path: PathLike, *, scan: int | None = None, apply_pose: bool = Tr
         scan: index of the scan to read, from 0; all of them by default. LAS and PTS files are one scan.
         apply_pose: whether the points of every scan are brought to the file's frame by its pose (E57, PTX);
             otherwise they stay in the frame of their scanner.
+        keep_noise: whether points of LAS that are classified as noise (7, 18) or withheld are among the points;
+            otherwise `metadata.noise` counts them.
 
     Raises:
         FormatError: an OSError; names the path, what is wrong and at which line or byte.
         MissingPackageError: an ImportError; names the package to install.
         ValueError: the file has no such scan.
     """
-    reader = read_chunks(path, scan=scan, apply_pose=apply_pose)
+    reader = read_chunks(path, scan=scan, apply_pose=apply_pose, keep_noise=keep_noise)
     points = np.empty((0, 3))
     count = 0
     for chunk in reader:
@@ -130,7 +149,7 @@ def read_cloud(path: PathLike, *, scan: int | None = None, apply_pose: bool = Tr
         count += len(chunk)
     points.resize((count, 3), refcheck=False)
     return Cloud(
-        points, reader.metadata.format, reader.dropped, reader.metadata, reader.viewpoint, reader.scan_count
+        points, reader.metadata.format, reader.dropped, reader.metadata, reader.viewpoint, reader.scan_count, reader.note
     )
 
 

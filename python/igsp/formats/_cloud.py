@@ -56,6 +56,7 @@ class Metadata:
     offset: tuple[float, float, float] | None = None  # LAS
     crs_wkt: str | None = None  # coordinate reference system as well-known text
     epsg: int | None = None  # its EPSG code, where the file gives one
+    noise: int = 0  # LAS: points classified as noise (7, 18) and withheld ones that were left out
     no_return: int = 0  # cells of a scan's grid, or points flagged invalid, that carry no point; left out
 
 
@@ -69,6 +70,7 @@ class Cloud:
     metadata: Metadata
     viewpoint: Points | None = None  # (3,): where the scanner stood in the frame of the points, if the file says it
     scan_count: int = 1  # of which the points are: several have no viewpoint in common
+    note: str = ""  # what was left out beside `dropped`, in words
 
 
 @dataclass(frozen=True)
@@ -77,6 +79,7 @@ class Selection:
 
     scan: int | None = None  # None: all scans
     apply_pose: bool = True
+    keep_noise: bool = False
 
     def includes(self, index: int) -> bool:
         return self.scan is None or self.scan == index
