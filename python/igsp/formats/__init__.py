@@ -1,5 +1,7 @@
 """Survey formats: LAS, LAZ, COPC, E57, PTX and PTS, read as points and written moved with all that belongs to them.
 
+The vertices of OBJ, OFF, STL and VTK are read, too, with `pip install 'igsp[mesh]'`.
+
 LAS, LAZ and COPC need `pip install 'igsp[las]'`, E57 needs `pip install 'igsp[e57]'`; PTX and PTS need nothing.
 What each format keeps and how its poses, scales and coordinate systems are treated: docs/formats.md.
 """
@@ -13,7 +15,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _e57_reader, _e57_writer, _las_reader, _las_writer, _motion, _pts, _ptx
+from . import _e57_reader, _e57_writer, _las_reader, _las_writer, _mesh, _motion, _pts, _ptx
 from ._cloud import Cloud, FormatError, Metadata, MissingPackageError, PathLike, Points, Scan, Selection
 
 __all__ = [
@@ -24,6 +26,7 @@ __all__ = [
     "MissingPackageError",
     "Scan",
     "is_supported",
+    "is_written",
     "read_chunks",
     "read_cloud",
     "read_metadata",
@@ -38,6 +41,10 @@ _READERS: dict[str, ModuleType] = {
     ".e57": _e57_reader,
     ".ptx": _ptx,
     ".pts": _pts,
+    ".obj": _mesh,
+    ".off": _mesh,
+    ".stl": _mesh,
+    ".vtk": _mesh,
 }
 _WRITERS: dict[str, ModuleType] = {
     ".las": _las_writer,
@@ -46,6 +53,11 @@ _WRITERS: dict[str, ModuleType] = {
     ".ptx": _ptx,
     ".pts": _pts,
 }
+
+
+def is_written(path: PathLike) -> bool:
+    """True if `write_aligned` takes a source of this name."""
+    return _extension(path) in _WRITERS
 
 
 def is_supported(path: PathLike) -> bool:
@@ -127,7 +139,7 @@ def read_cloud(
     """Reads the points of a file.
 
     Args:
-        path: its extension says which format: .las, .laz (also COPC), .e57, .ptx or .pts.
+        path: its extension says which format: .las, .laz (also COPC), .e57, .ptx, .pts, .obj, .off, .stl or .vtk.
         scan: index of the scan to read, from 0; all of them by default. LAS and PTS files are one scan.
         apply_pose: whether the points of every scan are brought to the file's frame by its pose (E57, PTX);
             otherwise they stay in the frame of their scanner.
@@ -186,7 +198,9 @@ def write_aligned(
         ValueError: target_from_source is not a rigid motion, or the file has no such scan.
     """
     motion = _motion.as_rigid(target_from_source, "target_from_source")
-    writer = _WRITERS[_known_extension(source_path)]
+    writer = _WRITERS.get(_known_extension(source_path))
+    if writer is None:
+        raise FormatError(output_path, f"{_extension(source_path)} is only read: igsp.write_points writes the points")
     if _WRITERS.get(_extension(output_path)) is not writer:
         known = " or ".join(extension for extension, module in _WRITERS.items() if module is writer)
         raise FormatError(output_path, f"the source is written in its own format: the name must end in {known}")
