@@ -225,7 +225,7 @@ class Registered(PageTest):
         self.assertLess(marked["red"], 0.98 * plain["red"])
         self.toggle("show-contradicting")
         self.assertEqual(self.pixels()["sum"], plain["sum"])
-        self.open("far.html")
+        self.open("line.html")
         self.assertFalse(self.find("contradicting-group").is_displayed())
 
     def test_before_and_after_beside_each_other(self):
