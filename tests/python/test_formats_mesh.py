@@ -1,4 +1,4 @@
-"""OBJ, OFF, STL and VTK: their vertices."""
+"""OBJ, OFF, STL and legacy VTK: their vertices."""
 
 import subprocess
 
@@ -32,6 +32,24 @@ def test_vertices_are_read_each_once(tmp_path, extension):
         formats.write_aligned(path, tmp_path / f"moved.{extension}", motion())
 
 
+@pytest.mark.parametrize("scalar", ["float", "double", "int"])
+@pytest.mark.parametrize("kind", ["ASCII", "BINARY"])
+def test_points_of_vtk_whatever_the_data_set(tmp_path, kind, scalar):
+    points = np.round(VERTICES) if scalar == "int" else VERTICES
+    path = tmp_path / "points.vtk"
+    dtype = {"float": ">f4", "double": ">f8", "int": ">i4"}[scalar]
+    body = points.astype(dtype).tobytes() if kind == "BINARY" else " ".join(map(repr, points.ravel().tolist())).encode()
+    head = f"# vtk DataFile Version 5.1\na title\n{kind}\nDATASET POLYDATA\nPOINTS 50 {scalar}\n".encode()
+    path.write_bytes(head + body + b"\nVERTICES 0 0\n")
+    np.testing.assert_allclose(formats.read_cloud(path).points, points, rtol=1e-6)
+    path.write_bytes(head + body[: len(body) // 2])
+    with pytest.raises(formats.FormatError, match=r"points.vtk: (the file ends after 2\d of 50 points|its points)"):
+        formats.read_cloud(path)
+    path.write_bytes(b"# vtk DataFile Version 3.0\nv\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\n")
+    with pytest.raises(formats.FormatError, match="no POINTS among its first lines"):
+        formats.read_cloud(path)
+
+
 def test_vertices_with_colours(tmp_path):
     path = tmp_path / "colours.obj"
     path.write_text("# made by hand\nv 1 2 3 0.5 0.5 0.5\nv 4 5 6 0 0 1\nv 7 8 9 1 1 1\nf 1 2 3\n")
@@ -43,12 +61,12 @@ def test_damaged_files_are_a_line_that_helps(tmp_path, extension, capfd):
     path = tmp_path / f"cloud.{extension}"
     with pytest.raises(OSError, match="No such file"):
         formats.read_cloud(path)
-    for content in [b"", b"OFF\n3 1", b"v 1 2 x\n", b"\x00" * 90, b"# vtk DataFile Version 3.0\nv\nASCII\nDATASET POLYDATA\n"]:
+    for content in [b"", b"OFF\n3 1", b"v 1 2 x\n", b"\x00" * 90, b"# vtk DataFile Version 3.0\nv\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n1 2 3 x"]:
         path.write_bytes(content)
         try:
             points = formats.read_cloud(path).points
         except formats.FormatError as error:
-            assert "save the cloud as PLY" in str(error)
+            assert str(error).startswith(f"{path}: ")
         else:
             assert len(points) == 0
 

@@ -44,7 +44,7 @@ void check_not_foreign(const fs::path& path) {
   const std::string extension = io::extension_of(path);
   static const std::map<std::string, std::string> extras = {{".las", "[las]"},  {".laz", "[las]"},  {".e57", "[e57]"},
                                                             {".ptx", ""},       {".obj", "[mesh]"}, {".off", "[mesh]"},
-                                                            {".stl", "[mesh]"}, {".vtk", "[mesh]"}};
+                                                            {".stl", "[mesh]"}, {".vtk", ""}};
   const auto extra = extras.find(extension);
   if (extra == extras.end()) return;
   throw FileError(

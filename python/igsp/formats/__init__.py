@@ -1,6 +1,6 @@
 """Survey formats: LAS, LAZ, COPC, E57, PTX and PTS, read as points and written moved with all that belongs to them.
 
-The vertices of OBJ, OFF, STL and VTK are read, too, with `pip install 'igsp[mesh]'`.
+The vertices of OBJ, OFF and STL are read with `pip install 'igsp[mesh]'`, the points of legacy VTK files with nothing.
 
 LAS, LAZ and COPC need `pip install 'igsp[las]'`, E57 needs `pip install 'igsp[e57]'`; PTX and PTS need nothing.
 What each format keeps and how its poses, scales and coordinate systems are treated: docs/formats.md.
@@ -15,7 +15,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _e57_reader, _e57_writer, _las_reader, _las_writer, _mesh, _motion, _pts, _ptx
+from . import _e57_reader, _e57_writer, _las_reader, _las_writer, _mesh, _motion, _pts, _ptx, _vtk
 from ._cloud import Cloud, FormatError, Metadata, MissingPackageError, PathLike, Points, Scan, Selection
 
 __all__ = [
@@ -44,7 +44,7 @@ _READERS: dict[str, ModuleType] = {
     ".obj": _mesh,
     ".off": _mesh,
     ".stl": _mesh,
-    ".vtk": _mesh,
+    ".vtk": _vtk,
 }
 _WRITERS: dict[str, ModuleType] = {
     ".las": _las_writer,

@@ -1,4 +1,4 @@
-"""Vertices of meshes and of VTK files, through meshio; read only."""
+"""Vertices of meshes, through meshio; read only."""
 
 from __future__ import annotations
 
