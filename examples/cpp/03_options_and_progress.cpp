@@ -1,6 +1,6 @@
 // Options, progress, and giving up in time: 03_options_and_progress SOURCE TARGET
-#include <igsp/igsp.hpp>
 #include <chrono>
+#include <igsp/igsp.hpp>
 #include <iostream>
 
 int main(int, char** argv) {
@@ -15,8 +15,7 @@ int main(int, char** argv) {
     return std::chrono::steady_clock::now() - start < std::chrono::minutes(1);  // false: igsp::Cancelled is thrown
   };
   try {
-    const igsp::Result result =
-        igsp::align(igsp::read_points(argv[1]), igsp::read_points(argv[2]), options, progress);
+    const igsp::Result result = igsp::align(igsp::read_points(argv[1]), igsp::read_points(argv[2]), options, progress);
     std::cout << result.reason << "\n";
     return result.registered ? 0 : 1;
   } catch (const igsp::Cancelled&) {

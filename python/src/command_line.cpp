@@ -80,11 +80,8 @@ cli::ForeignCloud open(nb::handle formats, const fs::path& path) {
             [chunks] { return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("dropped")); }); },
         .viewpoint = [chunks] { return in_python([&] { return point_of(chunks->iterator.attr("viewpoint")); }); },
         .scans =
-            [chunks] {
-              return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("scan_count")); });
-            },
-        .note =
-            [chunks] { return in_python([&] { return nb::cast<std::string>(chunks->iterator.attr("note")); }); }};
+            [chunks] { return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("scan_count")); }); },
+        .note = [chunks] { return in_python([&] { return nb::cast<std::string>(chunks->iterator.attr("note")); }); }};
   });
 }
 

@@ -43,8 +43,7 @@ void bind_diagnosis(nb::module_& module) {
            [](const Diagnosis& diagnosis) { return fmt::format("<Diagnosis: {}>", to_string(diagnosis.cause)); });
   module.def("diagnose", &run, nb::arg("source").noconvert(), nb::arg("target").noconvert(),
              nb::arg("source_viewpoint").noconvert().none(), nb::arg("target_viewpoint").noconvert().none(),
-             nb::arg("refused"),
-             nb::arg("search"), nb::arg("progress").none());
+             nb::arg("refused"), nb::arg("search"), nb::arg("progress").none());
 }
 
 }  // namespace igsp::python

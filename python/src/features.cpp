@@ -19,7 +19,8 @@ auto view(const Features& self) {
   return read_only_view(self.*member);
 }
 
-Features extract(const PointsIn& cloud, const std::optional<VectorIn>& viewpoint, const Keywords& keywords, nb::handle progress) {
+Features extract(const PointsIn& cloud, const std::optional<VectorIn>& viewpoint, const Keywords& keywords,
+                 nb::handle progress) {
   const Options options = options_of(keywords);
   const ProgressCallback callback = progress_of(progress);
   nb::gil_scoped_release unlocked;
@@ -34,8 +35,8 @@ void bind_features(nb::module_& module) {
                            "origin). N voxels, K keypoints. Its arrays are read-only.")
       .def_prop_ro("origin", &view<&Features::origin>, "(3,) float64.")
       .def_prop_ro(
-          "viewpoint", [](const Features& features) { return array_of(features.viewpoint); },
-          nb::rv_policy::automatic, "(3,) float64: where the scanner stood, local; None: unknown.")
+          "viewpoint", [](const Features& features) { return array_of(features.viewpoint); }, nb::rv_policy::automatic,
+          "(3,) float64: where the scanner stood, local; None: unknown.")
       .def_ro("voxel_size", &Features::voxel_size, "[units of the cloud].")
       .def_prop_ro("points", &view<&Features::points>, "(N, 3) float64: voxel centroids, local.")
       .def_prop_ro("curvature", &view<&Features::curvature>, "(N,) float32: surface variation, [0, 1/3].")

@@ -35,7 +35,8 @@ void bind_files(nb::module_& module) {
         LoadedCloud cloud = read_interruptibly(path);
         return std::tuple(array_of(std::move(cloud.points)), cloud.dropped, array_of(cloud.viewpoint));
       },
-      nb::arg("path"), "(N, 3) float64, the number of points dropped for a coordinate that is not finite, and the "
+      nb::arg("path"),
+      "(N, 3) float64, the number of points dropped for a coordinate that is not finite, and the "
       "viewpoint that the file states.");
   module.def(
       "write_points",

@@ -43,8 +43,9 @@ TimedPose tum_pose(const InputFile& file, const NumberLine& line) {
   const std::vector<double>& n = line.numbers;
   const Eigen::Quaterniond rotation(n[7], n[4], n[5], n[6]);
   if (std::abs(rotation.norm() - 1) > unit_tolerance) {
-    file.fail_at_line(line.line, fmt::format("a quaternion of length {:.4g}, expected 1: TUM has time x y z qx qy qz qw",
-                                             rotation.norm()));
+    file.fail_at_line(
+        line.line,
+        fmt::format("a quaternion of length {:.4g}, expected 1: TUM has time x y z qx qy qz qw", rotation.norm()));
   }
   TimedPose timed{n[0], Transformation::Identity()};
   timed.pose.linear() = rotation.normalized().toRotationMatrix();
@@ -58,7 +59,8 @@ TimedPose kitti_pose(const InputFile& file, const NumberLine& line, std::size_t 
   const Eigen::Matrix3d rotation = timed.pose.linear();
   const double deviation = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (deviation > 1e-3 || rotation.determinant() < 0) {
-    file.fail_at_line(line.line, fmt::format("not a rigid motion: R^T R differs from the identity by {:.3g}", deviation));
+    file.fail_at_line(line.line,
+                      fmt::format("not a rigid motion: R^T R differs from the identity by {:.3g}", deviation));
   }
   return timed;
 }

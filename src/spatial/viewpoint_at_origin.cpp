@@ -10,11 +10,11 @@ namespace igsp {
 namespace {
 
 // Measured in docs/decisions/0009-where-the-scanner-stood.md.
-constexpr double most_hidden = 0.06;        // of the points, from where a scanner stood
-constexpr double most_of_neighbours = 0.45;  // of what is hidden from places about it
-constexpr double neighbour_distance = 0.04;  // of the cloud's size
-constexpr double least_range_ratio = 4.0;    // of the ranges, 95 % to 5 %: a scanner among what it sees
-constexpr double least_compared = 1000;      // points
+constexpr double most_hidden = 0.06;           // of the points, from where a scanner stood
+constexpr double most_of_neighbours = 0.45;    // of what is hidden from places about it
+constexpr double neighbour_distance = 0.04;    // of the cloud's size
+constexpr double least_range_ratio = 4.0;      // of the ranges, 95 % to 5 %: a scanner among what it sees
+constexpr double least_compared = 1000;        // points
 constexpr std::array resolutions = {180, 90};  // cells to a right angle, the finest that has enough points
 
 ViewpointFinding unknown(const std::string& why) {
@@ -43,7 +43,8 @@ double hidden_from_about(const TrimmedCloud& cloud, int resolution) {
   std::array<double, 6> shares{};
   for (std::size_t i = 0; i < shares.size(); ++i) {
     const double distance = neighbour_distance * cloud.bounds().diagonal();
-    const Eigen::Vector3d place = Eigen::Vector3d::Unit(static_cast<Eigen::Index>(i / 2)) * (i % 2 ? -distance : distance);
+    const Eigen::Vector3d place =
+        Eigen::Vector3d::Unit(static_cast<Eigen::Index>(i / 2)) * (i % 2 ? -distance : distance);
     shares[i] = hidden_points(cloud, place, resolution).share;
   }
   std::ranges::sort(shares);
@@ -68,8 +69,9 @@ ViewpointFinding viewpoint_at_origin(PointView points) {
       return unknown(percent(hidden.share) + " of the points are hidden from its origin behind others");
     }
     const double about = hidden_from_about(cloud, resolution);
-    const std::string shares = fmt::format("from its origin {} of the points are hidden behind others, from places about it {}",
-                                           percent(hidden.share), percent(about));
+    const std::string shares =
+        fmt::format("from its origin {} of the points are hidden behind others, from places about it {}",
+                    percent(hidden.share), percent(about));
     if (hidden.share > most_of_neighbours * about) return unknown(shares);
     return {Eigen::Vector3d::Zero(), "believed, though the file does not say it: " + shares, ""};
   }

@@ -91,5 +91,7 @@ def test_variants_of_laz_that_the_codec_lacks_are_not_called_damaged(tmp_path: P
     record = content.index(b"laszip encoded") - 2 + 54
     struct.pack_into("<H", content, record + offset, value)
     source.write_bytes(content)
-    with pytest.raises(formats.FormatError, match=r"source\.laz: this variant of LAZ is not supported \(.*\): write it"):
+    with pytest.raises(
+        formats.FormatError, match=r"source\.laz: this variant of LAZ is not supported \(.*\): write it"
+    ):
         formats.read_cloud(source)

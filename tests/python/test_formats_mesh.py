@@ -61,7 +61,13 @@ def test_damaged_files_are_a_line_that_helps(tmp_path, extension, capfd):
     path = tmp_path / f"cloud.{extension}"
     with pytest.raises(OSError, match="No such file"):
         formats.read_cloud(path)
-    for content in [b"", b"OFF\n3 1", b"v 1 2 x\n", b"\x00" * 90, b"# vtk DataFile Version 3.0\nv\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n1 2 3 x"]:
+    for content in [
+        b"",
+        b"OFF\n3 1",
+        b"v 1 2 x\n",
+        b"\x00" * 90,
+        b"# vtk DataFile Version 3.0\nv\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n1 2 3 x",
+    ]:
         path.write_bytes(content)
         try:
             points = formats.read_cloud(path).points

@@ -48,7 +48,9 @@ def test_what_is_no_viewpoint_is_named(room):
 
 def test_one_that_the_cloud_contradicts_is_not_used_unless_insisted_on(room):
     behind = room.points.min(axis=0) - [0.2, 0.2, 0]
-    with pytest.warns(UserWarning, match=r"viewpoint=.* is not used: \d+ % of the points are hidden .*!' insists") as seen:
+    with pytest.warns(
+        UserWarning, match=r"viewpoint=.* is not used: \d+ % of the points are hidden .*!' insists"
+    ) as seen:
         assert igsp.extract_features(room, viewpoint=behind, voxel_size=0.2).viewpoint is None
     assert seen[0].filename == __file__
     text = ",".join(map(repr, behind.tolist())) + "!"

@@ -86,7 +86,8 @@ TEST_F(BenchmarkFiles, ViewpointsInTheFilesFrames) {
   EXPECT_EQ(cases[1].source_viewpoint.kind, Kind::none);
   EXPECT_EQ(cases[1].target_viewpoint.kind, Kind::automatic);
   complains(columns + "a,x.ply,y.ply,none,0,0,0 0,\n", {"line 2", "column 7 (source_viewpoint)", "'0 0'", "x y z"});
-  EXPECT_EQ(read_cases(file(std::string(header) + "a,g,x.ply,y.ply,none,0,0,1\n"))[0].source_viewpoint.kind, Kind::none);
+  EXPECT_EQ(read_cases(file(std::string(header) + "a,g,x.ply,y.ply,none,0,0,1\n"))[0].source_viewpoint.kind,
+            Kind::none);
 }
 
 TEST_F(BenchmarkFiles, BrokenListsAreNamedByLineAndColumn) {

@@ -44,18 +44,17 @@ int evaluate_trajectory(const TrajectoryError& error, bool json) {
   const ErrorRange &e_r = error.step_rotation_rad, &e_t = error.step_translation;
   if (json) {
     const auto range = [](double mean, double max) { return Json{{"mean", mean}, {"max", max}}; };
-    const Json report = {{"poses", error.poses},
-                         {"relative", {{"e_r_deg", range(degrees(e_r.mean), degrees(e_r.max))},
-                                       {"e_t", range(e_t.mean, e_t.max)}}},
-                         {"absolute", {{"rmse", error.position_rmse},
-                                       {"mean", error.position.mean},
-                                       {"max", error.position.max}}}};
+    const Json report = {
+        {"poses", error.poses},
+        {"relative", {{"e_r_deg", range(degrees(e_r.mean), degrees(e_r.max))}, {"e_t", range(e_t.mean, e_t.max)}}},
+        {"absolute", {{"rmse", error.position_rmse}, {"mean", error.position.mean}, {"max", error.position.max}}}};
     std::cout << report.dump(2) << "\n";
     return exit_registered;
   }
   std::cout << fmt::format("poses     {} in both files\n", error.poses);
-  std::cout << fmt::format("relative  e_r mean {:.6g}, max {:.6g} deg; e_t mean {:.6g}, max {:.6g} (consecutive poses)\n",
-                           degrees(e_r.mean), degrees(e_r.max), e_t.mean, e_t.max);
+  std::cout << fmt::format(
+      "relative  e_r mean {:.6g}, max {:.6g} deg; e_t mean {:.6g}, max {:.6g} (consecutive poses)\n", degrees(e_r.mean),
+      degrees(e_r.max), e_t.mean, e_t.max);
   std::cout << fmt::format("absolute  RMSE {:.6g}, mean {:.6g}, max {:.6g} (positions, after the best rigid motion)\n",
                            error.position_rmse, error.position.mean, error.position.max);
   return exit_registered;
@@ -94,8 +93,10 @@ constexpr const char* examples =
     "Example:\n"
     "  igsp evaluate --transform T.txt --truth T_gt.txt --source a.ply\n"
     "  igsp evaluate --transform survey/poses.tum --truth truth.tum --write poses.kitti\n"
-    "A file holds target_from_source as 4x4 text, rows in order, or a trajectory: TUM (time x y z qx qy qz qw, a pose a\n"
-    "line) or KITTI (the 12 numbers of the upper three rows). Trajectories are compared pose by pose: relative errors of\n"
+    "A file holds target_from_source as 4x4 text, rows in order, or a trajectory: TUM (time x y z qx qy qz qw, a pose "
+    "a\n"
+    "line) or KITTI (the 12 numbers of the upper three rows). Trajectories are compared pose by pose: relative errors "
+    "of\n"
     "consecutive poses, absolute errors of positions after the rigid motion that fits best.\n"
     "Of two transformations e_r and e_t are Eq. 12-13 of the paper; e_t depends on where the origin is,\n"
     "the displacement of the source's centroid does not.";
@@ -108,11 +109,12 @@ void add_evaluate_command(CLI::App& app, Command& command) {
   evaluate->add_option("--transform", settings->transformation, "estimated target_from_source, or a trajectory")
       ->required()
       ->type_name("FILE");
-  evaluate->add_option("--truth", settings->truth, "true target_from_source, or a trajectory")->required()->type_name("FILE");
+  evaluate->add_option("--truth", settings->truth, "true target_from_source, or a trajectory")
+      ->required()
+      ->type_name("FILE");
   evaluate->add_option("--source", settings->source, "source cloud, for the displacement of its centroid")
       ->type_name("FILE");
-  evaluate
-      ->add_option("--write", settings->written, "write what --transform holds as FILE: .tum, .kitti, or 4x4 text")
+  evaluate->add_option("--write", settings->written, "write what --transform holds as FILE: .tum, .kitti, or 4x4 text")
       ->type_name("FILE");
   evaluate->add_flag("--json", settings->json, "print JSON");
   evaluate->footer(examples);

@@ -13,10 +13,10 @@ struct ErrorRange {
 
 /// A trajectory against the true one; independent of the frame in which either is given.
 struct TrajectoryError {
-  std::size_t poses = 0;                              ///< that both have
-  ErrorRange step_rotation_rad, step_translation;     ///< relative pose error of consecutive poses
-  ErrorRange position;                                ///< of positions after the best rigid motion of the estimate
-  double position_rmse = 0;                           ///< absolute trajectory error
+  std::size_t poses = 0;                           ///< that both have
+  ErrorRange step_rotation_rad, step_translation;  ///< relative pose error of consecutive poses
+  ErrorRange position;                             ///< of positions after the best rigid motion of the estimate
+  double position_rmse = 0;                        ///< absolute trajectory error
 };
 
 /// Poses are the same if their times agree to a thousandth. Throws InvalidArgument for less than two.

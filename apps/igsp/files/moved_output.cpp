@@ -72,8 +72,8 @@ void check_moved_output(const fs::path& source, const fs::path& output) {
   if (moves_foreign(source, output)) return;
   if (reads_foreign(output)) {
     if (io::extension_of(source) == io::extension_of(output)) {
-      throw InvalidArgument(fmt::format("-o {}: {} is only read; name it .ply, which holds the points",
-                                        output.string(), output.extension().string()));
+      throw InvalidArgument(fmt::format("-o {}: {} is only read; name it .ply, which holds the points", output.string(),
+                                        output.extension().string()));
     }
     throw InvalidArgument(fmt::format("-o {}: {} is written only from a SOURCE of the same format, not from {}",
                                       output.string(), output.extension().string(), source.string()));

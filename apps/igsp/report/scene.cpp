@@ -131,7 +131,8 @@ std::vector<std::uint8_t> distances(const Points& drawn, const LocalCloud& targe
 class SeenThrough {
  public:
   SeenThrough(const Json& run, const LocalCloud& source, const LocalCloud& target)
-      : threads_(run["options"]["threads"].get<int>()), source_(image_of(run, "source", source)),
+      : threads_(run["options"]["threads"].get<int>()),
+        source_(image_of(run, "source", source)),
         target_(image_of(run, "target", target)) {}
 
   /// For each cloud the points that contradict the pose, null where nothing is known.

@@ -88,7 +88,6 @@ class ChunkReader(Iterator[Points]):
                 return points
         raise StopIteration
 
-
     @property
     def note(self) -> str:
         """What was left out beside `dropped`, in words; mostly empty."""
@@ -133,9 +132,7 @@ def read_chunks(
     return ChunkReader(path, points_per_chunk, Selection(scan, apply_pose, keep_noise))
 
 
-def read_cloud(
-    path: PathLike, *, scan: int | None = None, apply_pose: bool = True, keep_noise: bool = False
-) -> Cloud:
+def read_cloud(path: PathLike, *, scan: int | None = None, apply_pose: bool = True, keep_noise: bool = False) -> Cloud:
     """Reads the points of a file.
 
     Args:
@@ -161,7 +158,13 @@ def read_cloud(
         count += len(chunk)
     points.resize((count, 3), refcheck=False)
     return Cloud(
-        points, reader.metadata.format, reader.dropped, reader.metadata, reader.viewpoint, reader.scan_count, reader.note
+        points,
+        reader.metadata.format,
+        reader.dropped,
+        reader.metadata,
+        reader.viewpoint,
+        reader.scan_count,
+        reader.note,
     )
 
 

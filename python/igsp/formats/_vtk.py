@@ -30,7 +30,9 @@ def read(path: PathLike, selection: Selection, metadata: Metadata, points_per_ch
 def _points(path: PathLike) -> Points:
     with open(path, "rb") as file:
         if not file.readline(LONGEST_LINE).startswith(SIGNATURE):
-            raise FormatError(path, "byte 0: no legacy VTK file, which begins with '# vtk DataFile': save the cloud as PLY")
+            raise FormatError(
+                path, "byte 0: no legacy VTK file, which begins with '# vtk DataFile': save the cloud as PLY"
+            )
         file.readline(LONGEST_LINE)  # the title
         kind = file.readline(LONGEST_LINE).strip().upper()
         if kind not in (b"ASCII", b"BINARY"):
@@ -48,7 +50,9 @@ def _find_points(path: PathLike, file: BinaryIO) -> tuple[int, str]:
             if len(words) == 3 and words[1].isdigit() and words[2].lower() in TYPES:
                 return int(words[1]), TYPES[words[2].lower()]
             raise FormatError(path, f"{' '.join(words)[:60]!r}: expected POINTS, their number and their type")
-    raise FormatError(path, "no POINTS among its first lines: a VTK file without points of its own; save the cloud as PLY")
+    raise FormatError(
+        path, "no POINTS among its first lines: a VTK file without points of its own; save the cloud as PLY"
+    )
 
 
 def _ascii(path: PathLike, file: BinaryIO, count: int) -> Points:
