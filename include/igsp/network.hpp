@@ -19,8 +19,11 @@ namespace igsp {
 struct NetworkOptions {
   Options pair;  ///< of the features and of every pair; its voxel size, if set, is that of all scans
 
-  /// A link in no loop joins scans only with at least this confidence, [0.5, 1].
+  /// A link in no loop joins scans only with at least this confidence, [0.5, 1], ...
   double min_unconfirmed_confidence = 0.95;
+
+  /// ... and at least so many agreeing matches: a bare room fits every other one like it, on few matches.
+  std::size_t min_unconfirmed_matches = 30;
 };
 
 /// What became of a pair of scans.
@@ -42,6 +45,8 @@ struct NetworkLink {
   double confidence = 0;                                           ///< of the pair alone, [0, 1]
   double overlap = 0;                                              ///< the smaller of the two directions, [0, 1]
   double rmse = 0;                                                 ///< inlier RMSE of the pair [units of the cloud]
+  std::size_t mutual_matches = 0;                                  ///< of the pair alone, as in Evidence ...
+  std::size_t agreeing_matches = 0;                                ///< ... and those of them that agree
   double violation = 0;                                            ///< of free space, [0, 1)
   std::size_t consistent_triangles = 0;  ///< loops of three registered links that close, with this one in it
   double residual = 0;  ///< RMS displacement of the source's points, pair against network [units of the cloud]

@@ -55,8 +55,22 @@ void place_scans(Network& network, const BalancedPoses& poses, std::span<const S
   }
 }
 
+// Of a registered pair whose scans were not joined.
+std::string why_apart(const NetworkLink& link, const NetworkOptions& options) {
+  if (link.consistent_triangles == 0 && link.agreeing_matches < options.min_unconfirmed_matches) {
+    return fmt::format("in no loop that would confirm it, and {} agreeing matches are too few to stand alone (bare rooms "
+                       "fit each other)",
+                       link.agreeing_matches);
+  }
+  if (link.consistent_triangles == 0 && link.confidence < options.min_unconfirmed_confidence) {
+    return fmt::format("in no loop that would confirm it, and a confidence of {:.2f} is too low to stand alone",
+                       link.confidence);
+  }
+  return "joins two groups of scans against other links between them";
+}
+
 void name_states(Network& network, const MeasuredGraph& measured, const BalancedPoses& poses,
-                 const std::vector<CycleSupport>& support) {
+                 const std::vector<CycleSupport>& support, const NetworkOptions& options) {
   for (NetworkLink& link : network.links) {
     if (link.state == LinkState::not_registered || !contradicts_free_space(link)) continue;
     link.state = LinkState::rejected;
@@ -74,7 +88,7 @@ void name_states(Network& network, const MeasuredGraph& measured, const Balanced
     link.reason = std::isfinite(poses.errors[l])
                       ? fmt::format("the other links of the network put the pair {:.1f} sigma elsewhere",
                                     std::sqrt(poses.errors[l]))
-                      : "joins two groups of scans, with no loop to confirm it or against other links between them";
+                      : why_apart(link, options);
   }
   const std::vector<Edge> edges = edges_of(measured.graph, used);
   network.components = connected_components(network.scans.size(), edges);
@@ -88,12 +102,11 @@ void name_states(Network& network, const MeasuredGraph& measured, const Balanced
 }  // namespace
 
 void decide(Network& network, std::span<const ScanShape> shapes, const NetworkOptions& options) {
-  const MeasuredGraph measured =
-      measured_graph(network.links, shapes, network.voxel_size, options.min_unconfirmed_confidence);
+  const MeasuredGraph measured = measured_graph(network.links, shapes, network.voxel_size, options);
   const std::vector<CycleSupport> support = cycle_support(measured.graph);
   const std::vector<std::size_t> forest = spanning_forest(measured.graph, support);
   const BalancedPoses poses = balance_poses(measured.graph, forest, anchors_of(measured.graph, forest));
-  name_states(network, measured, poses, support);
+  name_states(network, measured, poses, support, options);
   place_scans(network, poses, shapes);
 }
 

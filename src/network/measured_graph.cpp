@@ -36,7 +36,13 @@ Matrix6 in_voxels(const Matrix6& covariance, double voxel_size) {
   return scale.asDiagonal() * covariance * scale.asDiagonal();
 }
 
-GraphLink graph_link(const NetworkLink& link, const ScanShape& source, double voxel_size, double min_confidence) {
+bool may_stand_alone(const NetworkLink& link, const NetworkOptions& options) {
+  return link.confidence >= options.min_unconfirmed_confidence &&
+         link.agreeing_matches >= options.min_unconfirmed_matches && link.violation <= doubtful_violation;
+}
+
+GraphLink graph_link(const NetworkLink& link, const ScanShape& source, double voxel_size,
+                     const NetworkOptions& options) {
   GraphLink result;
   result.source = link.source;
   result.target = link.target;
@@ -48,7 +54,7 @@ GraphLink graph_link(const NetworkLink& link, const ScanShape& source, double vo
   result.tolerance = covariance + floor_of(judging_floor, source.size / voxel_size);
   const double odds = link.confidence / std::max(1e-12, 1 - link.confidence);
   result.weight = std::clamp(std::log(odds), least_weight, greatest_weight);
-  result.may_stand_alone = link.confidence >= min_confidence && link.violation <= doubtful_violation;
+  result.may_stand_alone = may_stand_alone(link, options);
   return result;
 }
 
@@ -67,13 +73,12 @@ bool contradicts_free_space(const NetworkLink& link) {
 }
 
 MeasuredGraph measured_graph(std::span<const NetworkLink> links, std::span<const ScanShape> shapes, double voxel_size,
-                             double min_unconfirmed_confidence) {
+                             const NetworkOptions& options) {
   MeasuredGraph measured;
   for (const ScanShape& shape : shapes) measured.graph.centres.push_back(shape.centre / voxel_size);
   for (std::size_t i = 0; i < links.size(); ++i) {
     if (links[i].state == LinkState::not_registered || contradicts_free_space(links[i])) continue;
-    measured.graph.links.push_back(
-        graph_link(links[i], shapes[links[i].source], voxel_size, min_unconfirmed_confidence));
+    measured.graph.links.push_back(graph_link(links[i], shapes[links[i].source], voxel_size, options));
     measured.link_of.push_back(i);
   }
   return measured;

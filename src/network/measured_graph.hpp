@@ -22,7 +22,7 @@ struct MeasuredGraph {
   std::vector<std::size_t> link_of;  ///< per link of the graph
 };
 MeasuredGraph measured_graph(std::span<const NetworkLink> links, std::span<const ScanShape> shapes, double voxel_size,
-                             double min_unconfirmed_confidence);
+                             const NetworkOptions& options);
 
 /// True where the free space forbids a pair, whatever else speaks for it.
 bool contradicts_free_space(const NetworkLink& link);

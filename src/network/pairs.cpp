@@ -18,6 +18,8 @@ NetworkLink link_of(const ScanPair& pair, const Result& result) {
   link.confidence = result.confidence;
   link.overlap = result.overlap();
   link.rmse = result.rmse;
+  link.mutual_matches = result.evidence.mutual_matches;
+  link.agreeing_matches = result.evidence.agreeing_matches;
   link.violation = result.evidence.free_space.violation();
   link.precision = result.precision;
   return link;

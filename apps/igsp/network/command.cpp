@@ -134,6 +134,11 @@ void add_network_command(CLI::App& app, Command& command) {
                    wrapped("a link in no loop joins scans only with at least this confidence, in [0.5, 1]; default "
                            "0.95"))
       ->type_name("NUMBER");
+  network
+      ->add_option("--min-unconfirmed-matches", settings->options.min_unconfirmed_matches,
+                   wrapped("... and at least so many agreeing matches, since bare rooms fit each other on few; default "
+                           "30"))
+      ->type_name("INTEGER");
   add_columns_flag(*network, settings->read);
   network
       ->add_option("--max-points", settings->max_points,

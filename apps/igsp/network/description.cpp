@@ -66,6 +66,8 @@ Json network_json(const NamedNetwork& named, const NetworkOptions& options) {
                      {"confidence", link.confidence},
                      {"overlap", link.overlap},
                      {"rmse", link.rmse},
+                     {"mutual_matches", link.mutual_matches},
+                     {"agreeing_matches", link.agreeing_matches},
                      {"violation", link.violation},
                      {"consistent_triangles", link.consistent_triangles},
                      {"residual", link.residual},
@@ -79,6 +81,7 @@ Json network_json(const NamedNetwork& named, const NetworkOptions& options) {
           {"scans", scans},
           {"links", links},
           {"min_unconfirmed_confidence", options.min_unconfirmed_confidence},
+          {"min_unconfirmed_matches", options.min_unconfirmed_matches},
           {"options", to_json(options.pair)}};
 }
 

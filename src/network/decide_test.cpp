@@ -1,0 +1,85 @@
+#include "network/decide.hpp"
+
+#include <gtest/gtest.h>
+
+namespace igsp {
+namespace {
+
+// Scans of 50 voxels, and links between neighbours that say exactly where the next one is.
+struct Chain {
+  Network network;
+  std::vector<ScanShape> shapes;
+
+  explicit Chain(std::size_t scans) : shapes(scans, {Eigen::Vector3d::Zero(), 5}) {
+    network.voxel_size = 0.1;
+    network.scans.resize(scans);
+    for (std::size_t i = 1; i < scans; ++i) network.links.push_back(link(i, i - 1));
+  }
+  static NetworkLink link(std::size_t source, std::size_t target) {
+    NetworkLink link;
+    link.source = source;
+    link.target = target;
+    link.state = LinkState::unconfirmed;
+    link.confidence = 0.99;
+    link.mutual_matches = 200;
+    link.agreeing_matches = 100;
+    link.target_from_source.translation().x() = static_cast<double>(source) - static_cast<double>(target);
+    return link;
+  }
+  const Network& decided(const NetworkOptions& options = {}) {
+    decide(network, shapes, options);
+    return network;
+  }
+};
+
+TEST(Decide, LinkInNoLoopJoinsAndIsUnconfirmed) {
+  const Network network = Chain(2).decided();
+  EXPECT_EQ(network.components.size(), 1u);
+  EXPECT_EQ(network.links[0].state, LinkState::unconfirmed);
+  EXPECT_NEAR(network.scans[1].world_from_scan.translation().x(), 1, 1e-9);
+}
+
+// Two rooms without furniture: confident, for the surfaces touch everywhere, on few matches.
+TEST(Decide, FewMatchesInNoLoopDoNotJoin) {
+  Chain chain(2);
+  chain.network.links[0].mutual_matches = 34;
+  chain.network.links[0].agreeing_matches = 17;
+  NetworkOptions lenient;
+  lenient.min_unconfirmed_matches = 10;
+  EXPECT_EQ(Chain(chain).decided(lenient).components.size(), 1u);
+  const Network network = chain.decided();
+  EXPECT_EQ(network.components.size(), 2u);
+  EXPECT_EQ(network.links[0].state, LinkState::rejected);
+  EXPECT_NE(network.links[0].reason.find("17 agreeing matches are too few"), std::string::npos);
+}
+
+TEST(Decide, LowConfidenceInNoLoopDoesNotJoin) {
+  Chain chain(2);
+  chain.network.links[0].confidence = 0.8;
+  const Network network = chain.decided();
+  EXPECT_EQ(network.components.size(), 2u);
+  EXPECT_NE(network.links[0].reason.find("a confidence of 0.80 is too low"), std::string::npos);
+}
+
+TEST(Decide, LoopConfirmsLinksThatCouldNotStandAlone) {
+  Chain chain(3);
+  chain.network.links.push_back(Chain::link(2, 0));
+  for (NetworkLink& link : chain.network.links) {
+    link.confidence = 0.7;
+    link.agreeing_matches = 20;
+  }
+  const Network network = chain.decided();
+  EXPECT_EQ(network.components.size(), 1u);
+  for (const NetworkLink& link : network.links) EXPECT_EQ(link.state, LinkState::used);
+}
+
+TEST(Decide, SpaceThatAScannerSawThroughForbidsALink) {
+  Chain chain(2);
+  chain.network.links[0].violation = 0.2;
+  const Network network = chain.decided();
+  EXPECT_EQ(network.components.size(), 2u);
+  EXPECT_NE(network.links[0].reason.find("20 % of the points lie where"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace igsp
