@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from igsp import _core
 from igsp._core import Diagnosis, Features, Result
-from igsp.arrays import matrix_array
+from igsp.arrays import Points, matrix_array
 from igsp.progress import ProgressBar, ProgressFunction
 from igsp.viewpoints import Viewpoint, load, settle
 
@@ -52,12 +52,8 @@ def align(
     guess = None if initial is None else matrix_array(initial, "initial")
     with _progress_function(progress) as report:
         if not isinstance(source, Features) and not isinstance(target, Features):
-            moving, fixed = load(source, "source"), load(target, "target")
-            viewpoints = [
-                settle(moving, source_viewpoint, "source_viewpoint"),
-                settle(fixed, target_viewpoint, "target_viewpoint"),
-            ]
-            return _core.align_points(moving.points, fixed.points, *viewpoints, guess, keywords, report)
+            scans = _load_both(source, target, source_viewpoint, target_viewpoint)
+            return _core.align_points(*scans, guess, keywords, report)
         _share_voxel_size(source, target, keywords)
         return _core.align_features(
             _features(source, "source", source_viewpoint, keywords, report),
@@ -86,12 +82,8 @@ def diagnose(
     Most likely first; empty if nothing was found, as for clouds that simply do not overlap, and for a registered pair.
     """
     with _progress_function(progress) as report:
-        moving, fixed = load(source, "source"), load(target, "target")
-        viewpoints = [
-            settle(moving, source_viewpoint, "source_viewpoint"),
-            settle(fixed, target_viewpoint, "target_viewpoint"),
-        ]
-        return _core.diagnose(moving.points, fixed.points, *viewpoints, refused, search, report)
+        scans = _load_both(source, target, source_viewpoint, target_viewpoint)
+        return _core.diagnose(*scans, refused, search, report)
 
 
 def extract_features(
@@ -120,6 +112,18 @@ def _plain(options: OptionKeywords) -> dict[str, Any]:
         return os.fspath(value) if isinstance(value, os.PathLike) else value
 
     return {name: plain(value) for name, value in options.items()}
+
+
+def _load_both(
+    source: object, target: object, source_viewpoint: Viewpoint, target_viewpoint: Viewpoint
+) -> tuple[Points, Points, Points | None, Points | None]:
+    moving, fixed = load(source, "source"), load(target, "target")
+    return (
+        moving.points,
+        fixed.points,
+        settle(moving, source_viewpoint, "source_viewpoint"),
+        settle(fixed, target_viewpoint, "target_viewpoint"),
+    )
 
 
 def _share_voxel_size(source: object, target: object, keywords: dict[str, Any]) -> None:
