@@ -9,6 +9,7 @@
 #include "files/cloud_file.hpp"
 #include "files/foreign_formats.hpp"
 #include "igsp/errors.hpp"
+#include "io/file_format.hpp"
 #include "io/moved_copy.hpp"
 
 namespace igsp::cli {
