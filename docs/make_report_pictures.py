@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Takes docs/images/report.png and report_plots.png: the report page of a simulated object.
+"""Takes docs/images/report.png and report_plots.png, the report page of a simulated object, and network.png, that of a
+survey of a simulated park.
 
 usage: docs/make_report_pictures.py path/to/igsp     (needs chromium, chromium-driver and python3-selenium)
 """
@@ -12,6 +13,18 @@ here = pathlib.Path(__file__).resolve().parent
 sys.path.append(str(here.parent / "tests"))
 
 from headless_chromium import headless_chromium  # noqa: E402
+from selenium import webdriver  # noqa: E402
+
+
+def take_network(igsp: pathlib.Path, folder: pathlib.Path, browser: webdriver.Chrome) -> None:
+    subprocess.run([igsp, "simulate", "park", "--out", "park", "--stations", "8", "--points", "60000", "--seed", "3"],
+                   check=True, cwd=folder, capture_output=True)
+    (folder / "viewpoints.csv").write_text("scan,x,y,z\n" + "".join(f"station_{i},0,0,0\n" for i in range(8)))
+    subprocess.run([igsp, "network", "park", "-o", "survey", "--viewpoints", "viewpoints.csv", "--target-points",
+                    "6000"], cwd=folder, capture_output=True)
+    browser.set_window_size(1180, 960)
+    browser.get(f"file://{folder / 'survey/report.html'}")
+    browser.save_screenshot(str(here / "images" / "network.png"))
 
 
 def main() -> None:
@@ -28,6 +41,7 @@ def main() -> None:
         browser.execute_script("document.getElementById('loop').scrollIntoView()")
         browser.set_window_size(1180, 720)
         browser.save_screenshot(str(here / "images" / "report_plots.png"))
+        take_network(igsp, folder, browser)
         browser.quit()
 
 

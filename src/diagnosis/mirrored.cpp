@@ -9,9 +9,10 @@
 namespace igsp {
 namespace {
 
-// Whether there is an answer is asked, not which of many is best: fewer hypotheses keep the price below that of the
-// pair itself.
+// Whether there is an answer is asked, not how exact it is: fewer hypotheses and, where enough voxels are left, the
+// coarser scale keep the price well below that of the pair itself.
 constexpr int max_proposed = 16;
+constexpr std::size_t enough_voxels = 4000;
 
 // Any plane will do, the others differ by a rigid motion. Across a vertical one a levelled scan stays levelled.
 const Eigen::Vector3d reflection(-1, 1, 1);
@@ -25,7 +26,8 @@ std::optional<Diagnosis> mirrored(const Scan& source, const Scan& target, const 
   std::optional<Eigen::Vector3d> viewpoint = source.viewpoint;
   if (viewpoint) *viewpoint = viewpoint->cwiseProduct(reflection);
   Options options = refused.options;
-  options.scale.voxel_size = refused.voxel_size;
+  const bool coarser = std::min(refused.source.voxels, refused.target.voxels) >= enough_voxels;
+  options.scale.voxel_size = (coarser ? 2 : 1) * refused.voxel_size;
   options.hypotheses.max_proposed = std::min(options.hypotheses.max_proposed, max_proposed);
   const Result result = align({image, viewpoint}, target, options, progress);
   if (!result.registered) return std::nullopt;

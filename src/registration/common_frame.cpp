@@ -15,12 +15,12 @@ constexpr double agreeing_distance = 2.5;                        // voxels
 constexpr std::array<double, 2> mode_radii{4.0, 8.0};            // voxels
 constexpr std::array<double, 4> fit_scales{4.0, 3.0, 2.0, 2.0};  // voxels
 
-// The translation with the most others within `radius`, averaged over those.
-Eigen::Vector3d translation_mode(std::span<const PointPair> matches, const Eigen::Matrix3d& rotation, double radius) {
+}  // namespace
+
+TranslationMode translation_mode(std::span<const PointPair> matches, const Eigen::Matrix3d& rotation, double radius) {
   Points votes;
   for (const PointPair& match : matches) votes.push_back(match.target - rotation * match.source);
-  std::size_t most = 0;
-  Eigen::Vector3d mode = Eigen::Vector3d::Zero();
+  TranslationMode mode;
   for (const Eigen::Vector3d& vote : votes) {
     std::size_t count = 0;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -30,15 +30,10 @@ Eigen::Vector3d translation_mode(std::span<const PointPair> matches, const Eigen
         ++count;
       }
     }
-    if (count > most) {
-      most = count;
-      mode = sum / static_cast<double>(count);
-    }
+    if (count > mode.votes) mode = {sum / static_cast<double>(count), count};
   }
   return mode;
 }
-
-}  // namespace
 
 CommonFrame::CommonFrame(const PreparedCloud& source, const PreparedCloud& target, double descriptor_radius,
                          int threads)
@@ -47,22 +42,32 @@ CommonFrame::CommonFrame(const PreparedCloud& source, const PreparedCloud& targe
       descriptor_radius_(descriptor_radius),
       threads_(threads),
       source_supports_(gather_supports(source.grid, source.keypoints, descriptor_radius)),
-      target_descriptors_(describe_in_frame(gather_supports(target.grid, target.keypoints, descriptor_radius),
-                                            Eigen::Matrix3d::Identity(), descriptor_radius, threads)) {}
+      target_supports_(gather_supports(target.grid, target.keypoints, descriptor_radius)),
+      target_descriptors_(describe_target(Eigen::Matrix3d::Identity())) {}
+
+std::vector<Descriptor> CommonFrame::describe_source(const Eigen::Matrix3d& axes) const {
+  return describe_in_frame(source_supports_, axes, descriptor_radius_, threads_);
+}
+
+std::vector<Descriptor> CommonFrame::describe_target(const Eigen::Matrix3d& axes) const {
+  return describe_in_frame(target_supports_, axes, descriptor_radius_, threads_);
+}
 
 const std::vector<Descriptor>& CommonFrame::source_descriptors(const Eigen::Matrix3d& target_from_source) {
   for (const Cached& cached : cache_) {
     if (rotation_error_rad(cached.rotation, target_from_source) < reuse_angle_rad) return cached.descriptors;
   }
   // The target's axes, seen in the source: the columns of R^T.
-  cache_.push_back({target_from_source,
-                    describe_in_frame(source_supports_, target_from_source.transpose(), descriptor_radius_, threads_)});
+  cache_.push_back({target_from_source, describe_source(target_from_source.transpose())});
   return cache_.back().descriptors;
 }
 
 std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d& target_from_source) {
-  const auto& source = frame.source_descriptors(target_from_source);
-  const auto& target = frame.target_descriptors();
+  return mutual_nearest(frame, frame.source_descriptors(target_from_source), frame.target_descriptors());
+}
+
+std::vector<PointPair> mutual_nearest(const CommonFrame& frame, std::span<const Descriptor> source,
+                                      std::span<const Descriptor> target) {
   const std::size_t m = source.size(), n = target.size();
   if (m == 0 || n == 0) return {};
   const std::vector<std::uint16_t> distance = feature_distance_matrix(source, 1, target, frame.threads());
@@ -92,7 +97,7 @@ Rematch rematch(CommonFrame& frame, const Transformation& hypothesis, int degree
   for (std::size_t i = 0; i < scales.size(); ++i) scales[i] = fit_scales[i] * voxel_size;
   for (const double radius : mode_radii) {
     Transformation start = hypothesis;
-    start.translation() = translation_mode(best.matches, hypothesis.linear(), radius * voxel_size);
+    start.translation() = translation_mode(best.matches, hypothesis.linear(), radius * voxel_size).translation;
     const auto fit = robust_fit(best.matches, start, scales, degrees_of_freedom);
     if (!fit) continue;
     const std::size_t agreeing = count_inliers(best.matches, *fit, tolerance);

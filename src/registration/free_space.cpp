@@ -1,6 +1,7 @@
 #include "registration/free_space.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace igsp {
 namespace {
@@ -11,8 +12,30 @@ constexpr std::size_t max_looks = 1000;
 // beyond its rim, does not contradict, however it is seen.
 constexpr double on_surface = 3.0;  // voxels
 
+// People walk, leaves move, rims are met at a grazing angle: right poses of real scans are contradicted by so much, hardly
+// one by more.
+constexpr double tolerated = 0.035;
+constexpr double decades_per_share = 20, most_decades_against = 2;  // beyond what is tolerated
+constexpr double decades_for = 0.5;                                // a direction, where nothing is contradicted
+constexpr double convincing_view = 100;                             // points in view for half of that
+// A wrong pose is not contradicted either where the voxels are as large as what is in the scene: none for the first number
+// of voxels, all for the second.
+constexpr double coarse_voxels = 1000, fine_voxels = 10000;
+
 // Points in view that agree, added to those that are there: few prove little.
 constexpr double assumed_agreeing = 20;
+
+double confirmed_by(const std::optional<FreeSpaceViolation>& violation) {
+  if (!violation) return 0;
+  const double in_view = static_cast<double>(violation->in_view);
+  return std::max(0.0, 1 - violation->share() / tolerated) * in_view / (in_view + convincing_view);
+}
+
+double resolution(const PreparedCloud& source, const PreparedCloud& target) {
+  const double voxels = std::sqrt(static_cast<double>(source.features.points.size()) *
+                                  static_cast<double>(target.features.points.size()));
+  return std::clamp(std::log(voxels / coarse_voxels) / std::log(fine_voxels / coarse_voxels), 0.0, 1.0);
+}
 
 }  // namespace
 
@@ -46,6 +69,12 @@ FreeSpace free_space(const PreparedCloud& source, const PreparedCloud& target,
                      const Transformation& target_from_source) {
   return {free_space_violation(source, target, target_from_source),
           free_space_violation(target, source, target_from_source.inverse())};
+}
+
+double free_space_evidence(const FreeSpace& free_space, const PreparedCloud& source, const PreparedCloud& target) {
+  const double confirmed = confirmed_by(free_space.source) + confirmed_by(free_space.target);
+  const double contradicted = decades_per_share * std::max(0.0, free_space.violation() - tolerated);
+  return decades_for * confirmed * resolution(source, target) - std::min(contradicted, most_decades_against);
 }
 
 }  // namespace igsp

@@ -15,4 +15,8 @@ std::optional<FreeSpaceViolation> free_space_violation(const PreparedCloud& move
 FreeSpace free_space(const PreparedCloud& source, const PreparedCloud& target,
                      const Transformation& target_from_source);
 
+/// What that says of the pose, as log10 odds that it is right; exactly 0 where no viewpoint is known. docs/verdict.md tells
+/// how the numbers were found.
+double free_space_evidence(const FreeSpace& free_space, const PreparedCloud& source, const PreparedCloud& target);
+
 }  // namespace igsp

@@ -148,6 +148,20 @@ TEST(FreeSpace, FewInViewSayLittle) {
   EXPECT_EQ((FreeSpaceViolation{}).share(), 0);
 }
 
+TEST(FreeSpace, EvidenceIsForWhatIsEmptyAndAgainstWhatIsNot) {
+  const Points scan = two_rooms().seen_from(left_eye, Random(1));
+  const Cloud room({scan, left_eye});
+  const PreparedCloud& cloud = room.prepared;
+  EXPECT_EQ(free_space_evidence({}, cloud, cloud), 0);  // to the bit: without viewpoints two questions decide
+  const FreeSpaceViolation none{1000, 0}, some{1000, 20}, people{1000, 36}, wall{1000, 300};
+  const auto evidence = [&](auto... directions) { return free_space_evidence(FreeSpace{directions...}, cloud, cloud); };
+  EXPECT_GT(evidence(none, none), evidence(none, std::nullopt));
+  EXPECT_GT(evidence(none, std::nullopt), evidence(some, std::nullopt));
+  EXPECT_NEAR(evidence(people, people), 0, 0.03);
+  EXPECT_LT(evidence(wall, none), -1.5);
+  EXPECT_LT(evidence(FreeSpaceViolation{10, 0}, std::nullopt), 0.2 * evidence(none, std::nullopt));
+}
+
 TEST(FreeSpace, BeyondTheRimOfWhatWasSeenNothingIsKnown) {
   const Points wall = Boxes{{box(2, -1, -1, 2.1, 1, 1)}}.seen_from(Vector3d::Zero(), Random(1));
   const RangeImage image(wall, Vector3d::Zero(), voxel_size);

@@ -51,15 +51,23 @@ bool is_clear(const Rematch& match) {
          static_cast<double>(match.agreeing) >= enough_agreement * static_cast<double>(match.matches.size());
 }
 
-// The first `limit` that do not repeat an earlier one: matching again draws proposals together, and six times the same
-// pose would leave no room for the others.
-std::vector<Rematch> distinct(std::vector<Rematch> sorted, double voxel_size, int limit) {
+template <typename Posed>
+bool repeats_one_of(std::span<const Posed> others, const Transformation& pose, double voxel_size) {
+  return std::any_of(others.begin(), others.end(), [&](const Posed& other) {
+    return same_pose(pose, other.target_from_source, Eigen::Vector3d::Zero(), voxel_size);
+  });
+}
+
+// The first `limit` that repeat neither an earlier one nor what is ranked already: matching again draws proposals
+// together, and six times the same pose would leave no room for the others.
+std::vector<Rematch> distinct(std::vector<Rematch> sorted, std::span<const Rival> ranked, double voxel_size,
+                              int limit) {
   std::vector<Rematch> kept;
   for (Rematch& match : sorted) {
-    const bool repeats = std::any_of(kept.begin(), kept.end(), [&](const Rematch& other) {
-      return same_pose(match.target_from_source, other.target_from_source, Eigen::Vector3d::Zero(), voxel_size);
-    });
-    if (!repeats) kept.push_back(std::move(match));
+    if (!repeats_one_of(ranked, match.target_from_source, voxel_size) &&
+        !repeats_one_of(std::span<const Rematch>(kept), match.target_from_source, voxel_size)) {
+      kept.push_back(std::move(match));
+    }
     if (kept.size() == static_cast<std::size_t>(limit)) break;
   }
   return kept;
@@ -67,8 +75,8 @@ std::vector<Rematch> distinct(std::vector<Rematch> sorted, double voxel_size, in
 
 // Matches every proposal again in its common frame and keeps those with most agreeing matches. After a clear winner
 // only proposals that as many candidates support are looked into: they would be the other poses of a symmetric scene.
-std::vector<Rematch> screen(CommonFrame& frame, std::span<const Hypothesis> hypotheses, const Options& options,
-                            StageClock& clock) {
+std::vector<Rematch> screen(CommonFrame& frame, std::span<const Hypothesis> hypotheses, std::span<const Rival> ranked,
+                            const Options& options, StageClock& clock) {
   std::vector<Rematch> screened;
   std::size_t winner_inliers = 0;
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
@@ -80,7 +88,7 @@ std::vector<Rematch> screen(CommonFrame& frame, std::span<const Hypothesis> hypo
   }
   std::stable_sort(screened.begin(), screened.end(),
                    [](const Rematch& a, const Rematch& b) { return a.agreeing > b.agreeing; });
-  return distinct(std::move(screened), frame.target().features.voxel_size, options.hypotheses.max_refined);
+  return distinct(std::move(screened), ranked, frame.target().features.voxel_size, options.hypotheses.max_refined);
 }
 
 LoopOutcome hybrid_loop(CommonFrame& frame, const Transformation& initial, int iterations, const Options& options,
@@ -151,14 +159,13 @@ bool is_settled(std::span<const Rival> ranked, double voxel_size) {
   });
 }
 
-// Proposes and screens at `scale`, refines and ranks at the finer one. What the other scale found already is ranked twice:
-// the verdict leaves out what repeats the winner, but not what repeats a rival.
+// Proposes and screens at `scale`, refines and ranks at the finer one what is not ranked already.
 void search_at(CommonFrame& scale, CommonFrame& finer, const Options& options, StageClock& clock,
                std::vector<Rival>& ranked) {
   clock.start("hypotheses");
   const std::vector<Hypothesis> hypotheses = propose(scale, options);
   clock.start("screening");
-  const std::vector<Rematch> screened = screen(scale, hypotheses, options, clock);
+  const std::vector<Rematch> screened = screen(scale, hypotheses, ranked, options, clock);
   clock.start("ranking");
   std::ranges::move(rank(finer, screened, options, clock), std::back_inserter(ranked));
   std::ranges::stable_sort(ranked, std::greater(), [](const Rival& rival) { return rival.assessment.quality; });

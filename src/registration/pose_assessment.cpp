@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimation/robust_fit.hpp"
+#include "registration/free_space.hpp"
 
 namespace igsp {
 namespace {
@@ -11,23 +12,37 @@ namespace {
 constexpr double agreeing_distance = 2.5;  // voxels
 // Log odds of 1 right to 1 wrong answer: docs/verdict.md tells how they were fitted.
 constexpr double contact_weight = 2.0, matches_weight = 2.0, missing_weight = 5.0, even = 4.4;
-constexpr double expected_agreement = 0.8;  // share of mutual matches that agree, over overlap: right poses have more
+constexpr double most_contact = 0.97;       // wrong poses of like surfaces come as near; more says no more
+constexpr double expected_agreement = 0.7;  // share of mutual matches that agree, over overlap: right poses have more
 
+// Of the two questions that need no viewpoint.
 double quality_of(const PoseAssessment& pose) {
-  const double s = std::sqrt(pose.source_on_target.share * pose.target_on_source.share);
+  const double s = std::min(most_contact, std::sqrt(pose.source_on_target.share * pose.target_on_source.share));
   const auto agreeing = static_cast<double>(pose.agreeing_matches);
   // Where much overlaps much must agree: the same architecture elsewhere lies well on itself, yet few features agree.
   return contact_weight * std::log10(s / (1 - s)) + matches_weight * std::log10(agreeing + 1) +
          missing_weight * std::log10(std::min(1.0, pose.share_of_expected())) - even;
 }
 
+// Rooms are like rooms: their wrong poses overlap by a half and more, with contact and matches that would carry a right
+// pose of a third. Right ones of that overlap have more of both.
+constexpr double undemanding_overlap = 0.4, decades_per_overlap = 3.0;
+
 }  // namespace
+
+double PoseAssessment::overlap() const {
+  return std::sqrt(source_on_target.overlap * target_on_source.overlap);
+}
 
 double PoseAssessment::share_of_expected() const {
   const double share =
       (static_cast<double>(agreeing_matches) + 0.1) / std::max(1.0, static_cast<double>(mutual_matches));
-  const double overlap = std::min(source_on_target.overlap, target_on_source.overlap);
-  return share / (expected_agreement * std::max(overlap, 0.02));
+  return share / (expected_agreement * std::max(overlap(), 0.02));
+}
+
+double PoseAssessment::chance_odds() const {
+  const double demanded = decades_per_overlap * std::max(0.0, overlap() - undemanding_overlap);
+  return std::pow(10.0, demanded - quality);
 }
 
 PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from_source) {
@@ -38,7 +53,9 @@ PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from
   assessment.mutual_matches = matches.size();
   assessment.agreeing_matches =
       count_inliers(matches, target_from_source, agreeing_distance * frame.target().features.voxel_size);
-  assessment.quality = quality_of(assessment);
+  assessment.free_space = free_space(frame.source(), frame.target(), target_from_source);
+  assessment.quality = quality_of(assessment) +
+                       free_space_evidence(assessment.free_space, frame.source(), frame.target());
   return assessment;
 }
 

@@ -1,19 +1,24 @@
 #pragma once
 
+#include "igsp/result.hpp"
 #include "registration/common_frame.hpp"
 #include "registration/surface_contact.hpp"
 
 namespace igsp {
 
-/// What the clouds themselves say of a pose: two independent questions.
+/// What the clouds themselves say of a pose: two independent questions, three where a viewpoint is known.
 struct PoseAssessment {
   SurfaceContact source_on_target;  ///< do the surfaces lie on each other wherever they meet?
   SurfaceContact target_on_source;
   std::size_t mutual_matches = 0;    ///< do the features agree? Mutual nearest neighbours in the common frame ...
   std::size_t agreeing_matches = 0;  ///< ... and those of them within 2.5 voxels
+  FreeSpace free_space;              ///< is empty what the other scanner saw through?
   double quality = 0;                ///< Q, docs/method.md
   /// Share of the mutual matches that agree, in terms of what right poses of such an overlap have at least.
   double share_of_expected() const;
+  double overlap() const;  ///< geometric mean of both directions: one cloud may lie inside the other
+  /// Odds that the pose is chance, against that it is right.
+  double chance_odds() const;
 };
 PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from_source);
 

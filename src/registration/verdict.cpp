@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 
-#include "registration/free_space.hpp"
 #include "registration/hypotheses.hpp"
 #include "registration/pose_assessment.hpp"
 #include "registration/precision.hpp"
@@ -74,12 +73,16 @@ void name_what_the_target_leaves_free(const CommonFrame& frame, Result& result) 
   result.reason += "; the target alone leaves free: " + free_motions(result.precision.free_directions);
 }
 
-// Other poses, best first, without those that say the same as the winner.
+// Other poses, best first, each once: without those that say the same as the winner or as a better rival.
 std::vector<Rival> true_rivals(const CommonFrame& frame, const SearchOutcome& outcome) {
   std::vector<Rival> rivals;
   const double v = frame.target().features.voxel_size;
   for (const Rival& rival : outcome.rivals) {
-    if (!same_pose(rival.target_from_source, outcome.target_from_source, Eigen::Vector3d::Zero(), v)) {
+    const auto repeated_by = [&](const Transformation& pose) {
+      return same_pose(rival.target_from_source, pose, Eigen::Vector3d::Zero(), v);
+    };
+    if (!repeated_by(outcome.target_from_source) &&
+        std::ranges::none_of(rivals, repeated_by, [](const Rival& better) { return better.target_from_source; })) {
       rivals.push_back(rival);
     }
   }
@@ -95,7 +98,7 @@ struct Judgement {
 };
 
 double confidence_of(const Judgement& judgement) {
-  const double confidence = 1.0 / (1.0 + odds(-judgement.pose.quality) + judgement.rival_odds);
+  const double confidence = 1.0 / (1.0 + judgement.pose.chance_odds() + judgement.rival_odds);
   return judgement.free_directions.empty() ? confidence : std::min(confidence, 0.1);
 }
 
@@ -127,7 +130,7 @@ std::optional<RunnerUp> runner_up_of(const Judgement& judgement) {
 }
 
 std::string why_refused(const Judgement& judgement) {
-  return judgement.rival_odds > odds(-judgement.pose.quality)
+  return judgement.rival_odds > judgement.pose.chance_odds()
              ? "; ambiguous: another pose explains the clouds about as well"
              : "; too little to tell it from chance";
 }
@@ -164,7 +167,7 @@ void judge(CommonFrame& frame, CoarserScale& coarser, const SearchOutcome& outco
   result.evidence.contact_share = std::sqrt(pose.source_on_target.share * pose.target_on_source.share);
   result.evidence.quality = pose.quality;
   result.evidence.rival_odds = judgement.rival_odds;
-  result.evidence.free_space = free_space(frame.source(), frame.target(), outcome.target_from_source);
+  result.evidence.free_space = pose.free_space;
   result.runner_up = runner_up_of(judgement);
   result.confidence = judgement.confidence;
   result.registered = result.confidence >= 0.5;

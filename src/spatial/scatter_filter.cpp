@@ -1,51 +1,56 @@
 #include "spatial/scatter_filter.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 #include "spatial/cell_hash.hpp"
+#include "spatial/hull.hpp"
 
 namespace igsp {
 namespace {
 
 constexpr int slot_bits = 18;
-constexpr std::array<double, 3> cells_across{16, 64, 256};  // along the diagonal
-constexpr double min_layers = 4;      // across the thinnest side: in a flat box a surface alone looks as dense as noise
-constexpr double max_occupied = 0.8;  // more says too little about what is empty
+constexpr double blocks_across = 16;  // along the diagonal
+constexpr double min_layers = 4;      // of blocks, across the thinnest side
+constexpr double thinnest = 1.0 / 16;  // side, of the diagonal: a flat surface alone looks like dense noise
+constexpr double margin = 0.1;        // of the hull's width: what it is made of, walls mostly, does not count
+constexpr std::size_t min_blocks = 20;
+constexpr double emptiest = 0.25;        // of the blocks: surfaces leave that many empty ...
+constexpr double below_the_mean = 0.67;  // ... and this quantile of a Poisson distribution lies so many sigmas below
 constexpr double sigmas = 3.0;        // of the noise's Poisson distribution
 constexpr double min_kept = 0.6;      // what is most of the cloud is no noise
 constexpr double max_kept = 0.98;  // less noise does no harm, and the lone far points of a clean scan are worth keeping
 
-struct Occupancy {
-  double occupied, cells;
-};
-
-Occupancy occupancy(PointView cloud, const Bounds& bounds, double cell_size) {
-  std::vector<std::uint8_t> seen(std::size_t{1} << slot_bits, 0);
-  const double inverse_cell_size = 1.0 / cell_size;
+// The number of points in each block inside the hull.
+std::vector<std::uint32_t> counts_inside(PointView cloud, const Bounds& bounds, double block_size) {
+  const Eigen::Array3i blocks = ((bounds.max - bounds.min) / block_size).array().floor().cast<int>() + 1;
+  std::vector<std::uint32_t> counts(static_cast<std::size_t>(blocks.prod()), 0);
   for (const Eigen::Vector3d& point : cloud) {
-    seen[cell_hash((point - bounds.min) * inverse_cell_size) >> (64 - slot_bits)] = 1;
+    const Eigen::Array3i block = ((point - bounds.min) / block_size).array().floor().cast<int>().min(blocks - 1);
+    ++counts[(block.z() * blocks.y() + block.y()) * blocks.x() + block.x()];
   }
-  const auto occupied = std::count(seen.begin(), seen.end(), 1);
-  return {static_cast<double>(occupied), (((bounds.max - bounds.min) / cell_size).array().floor() + 1).prod()};
+  const Hull hull(cloud, bounds);
+  std::vector<std::uint32_t> inside;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const auto x = static_cast<int>(i) % blocks.x(), row = static_cast<int>(i) / blocks.x();
+    const Eigen::Vector3d centre =
+        bounds.min + block_size * (Eigen::Vector3d(x, row % blocks.y(), row / blocks.y()).array() + 0.5).matrix();
+    if (hull.holds(centre, margin)) inside.push_back(counts[i]);
+  }
+  return inside;
 }
 
 }  // namespace
 
 double scatter_density(PointView cloud, const Bounds& bounds) {
-  double density = std::numeric_limits<double>::infinity();
-  for (const double across : cells_across) {
-    const double cell_size = bounds.diagonal() / across;
-    if ((bounds.max - bounds.min).minCoeff() < min_layers * cell_size) continue;
-    const Occupancy found = occupancy(cloud, bounds, cell_size);
-    if (found.occupied > max_occupied * found.cells) continue;
-    // Of cells with a mean of n points the share exp(-n) stays empty.
-    const double mean = -std::log(1 - found.occupied / found.cells);
-    density = std::min(density, mean / std::pow(cell_size, 3));
-  }
-  return std::isfinite(density) ? density : 0.0;
+  const double diagonal = bounds.diagonal(), thin_side = (bounds.max - bounds.min).minCoeff();
+  if (!(thin_side > thinnest * diagonal)) return 0;
+  const double block_size = std::min(diagonal / blocks_across, thin_side / min_layers);
+  std::vector<std::uint32_t> counts = counts_inside(cloud, bounds, block_size);
+  if (counts.size() < min_blocks) return 0;
+  const auto quantile = counts.begin() + static_cast<std::ptrdiff_t>(emptiest * static_cast<double>(counts.size()));
+  std::ranges::nth_element(counts, quantile);
+  return (*quantile + below_the_mean * std::sqrt(*quantile)) / std::pow(block_size, 3);
 }
 
 ScatterFilter::ScatterFilter(PointView cloud, const Bounds& bounds, double density, double cell_size)

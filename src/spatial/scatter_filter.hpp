@@ -10,9 +10,9 @@ namespace igsp {
 /// Side of the cells that tell surfaces from scattered noise [voxels]: a surface fills about nine voxels of one.
 inline constexpr double scatter_cell = 3.0;
 
-/// An upper bound of the density of noise that is scattered over the bounding box (dust, multipath, artificial
-/// outliers) [points per unit of volume]. Surfaces leave most of the box empty, noise does not: the share of empty
-/// cells bounds the noise, and the least bound over several cell sizes is taken.
+/// The density of noise that is scattered over the convex hull (dust, multipath, artificial outliers) [points per unit of
+/// volume]. Surfaces leave a quarter and more of the hull's blocks empty, noise does not: from the quartile of the
+/// points in a block. 0 for most clouds.
 double scatter_density(PointView cloud, const Bounds& bounds);
 
 /// Tells the points of surfaces from scattered noise: a cell is a surface's if it holds more points than noise of this

@@ -64,6 +64,21 @@ TEST(ScatterFilter, NoiseGoesAndSurfacesStay) {
   }
 }
 
+// The box that the noise fills stands at an angle, and fills less than half of the one along the axes.
+TEST(ScatterFilter, NoiseGoesWhereverTheCloudIsTurned) {
+  Random random(11);
+  for (int turn = 0; turn < 5; ++turn) {
+    const Eigen::Matrix3d rotation = random.rotation();
+    Points walls = two_walls(50000, 1), noise = uniform_in_box(3000, 2);
+    for (Points* points : {&walls, &noise}) {
+      for (Eigen::Vector3d& point : *points) point = rotation * point;
+    }
+    const ScatterFilter filter = filter_of(together(walls, noise), 0.8);
+    EXPECT_GT(without_scatter(walls, filter).size(), 0.97 * walls.size()) << turn;
+    EXPECT_LT(without_scatter(noise, filter).size(), 0.2 * noise.size()) << turn;
+  }
+}
+
 TEST(ScatterFilter, LengthUnitDoesNotMatter) {
   Points cloud = together(two_walls(20000, 3), uniform_in_box(6000, 4));
   const std::size_t kept = without_scatter(cloud, filter_of(cloud, 0.4)).size();

@@ -8,6 +8,7 @@
 #include "igsp/errors.hpp"
 #include "network/inputs.hpp"
 #include "network/outputs.hpp"
+#include "network/page.hpp"
 #include "network/store.hpp"
 #include "shell/commands.hpp"
 #include "shell/exit_codes.hpp"
@@ -48,11 +49,13 @@ ScanReading reading_of(const NetworkSettings& settings) {
   return reading;
 }
 
-void write_outputs(const fs::path& folder, const NamedNetwork& named, const NetworkOptions& options) {
+void write_outputs(const fs::path& folder, const NamedNetwork& named, const NetworkOptions& options,
+                   const std::vector<DrawnScan>& drawn) {
   write_text(folder / "links.csv", links_csv(named));
   write_text(folder / "network.json", report_text(network_json(named, options)));
   write_text(folder / "network.g2o", network_g2o(named));
   write_text(folder / "poses.tum", poses_tum(named));
+  write_text(folder / "report.html", network_page(named, options, drawn));
   write_text(folder / "poses.csv", poses_csv(named));
 }
 
@@ -90,13 +93,18 @@ int run_network(const NetworkSettings& settings) {
   const ProgressCallback progress = bar.callback();
   NetworkStore store(settings.folder / "cache", reading, options.pair);
   choose_voxel_size(options.pair, store, reading, settings.quiet, progress);
-  const auto features = [&](std::size_t i) { return store.features(i, progress); };
+  std::vector<DrawnScan> drawn(reading.files.size());
+  const auto features = [&](std::size_t i) {
+    Features one = store.features(i, progress);
+    drawn[i] = drawn_scan(one, drawn.size());
+    return one;
+  };
   const Network network = register_network(reading.files.size(), features, options, progress, store.pairs());
   stop_if_interrupted();
   bar.finish();
   NamedNetwork named{network, {}};
   for (const fs::path& file : reading.files) named.names.push_back(file.string());
-  write_outputs(settings.folder, named, options);
+  write_outputs(settings.folder, named, options, drawn);
   std::cout << network_summary(named);
   return exit_code(network);
 }
@@ -107,6 +115,7 @@ constexpr const char* notes =
     "  poses.csv     scan,component,qw,qx,qy,qz,tx,ty,tz: world_from_scan; every component has a world of its own,\n"
     "                the frame of its first scan; a scan that could not be placed is a component of its own\n"
     "  links.csv     every pair that was tried: used, unconfirmed (in no loop), rejected or not_registered, and why\n"
+    "  report.html   to look at: map, links, stations; one file, without a network\n"
     "  network.json  all of it, with covariances; network.g2o, poses.tum: for other programs\n"
     "  cache         features and pairs: the same command goes on where an earlier one stopped, and scans that are\n"
     "                added are paired with the others only; may be deleted\n"

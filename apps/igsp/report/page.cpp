@@ -4,18 +4,21 @@
 
 namespace igsp::cli {
 
-std::string report_page(const Json& run, PointView source, PointView target) {
-  const Json data = {{"run", run}, {"scene", report_scene(run, source, target)}};
-  std::string page(report_page_head);
+std::string inside_script(const Json& data) {
+  std::string text;
   for (const char letter : data.dump(-1, ' ', false, Json::error_handler_t::replace)) {
     if (letter == '<') {
-      page += "\\u003c";  // nothing in the data may end the script element that it stands in
+      text += "\\u003c";
     } else {
-      page += letter;
+      text += letter;
     }
   }
-  page += report_page_tail;
-  return page;
+  return text;
+}
+
+std::string report_page(const Json& run, PointView source, PointView target) {
+  const Json data = {{"run", run}, {"scene", report_scene(run, source, target)}};
+  return std::string(report_page_head) + inside_script(data) + std::string(report_page_tail);
 }
 
 }  // namespace igsp::cli

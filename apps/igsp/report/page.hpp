@@ -12,6 +12,9 @@ namespace igsp::cli {
 /// clouds are those of the run, thinned for the page. Throws Cancelled after an interrupt.
 std::string report_page(const Json& run, PointView source, PointView target);
 
+/// JSON as the text of a script element of a page: nothing in it may end the element.
+std::string inside_script(const Json& data);
+
 // The page before and after its data, assembled from report/ and the drawing libraries when igsp is built.
 extern const std::string_view report_page_head;
 extern const std::string_view report_page_tail;
