@@ -55,7 +55,7 @@ TEST(PoseFile, WhatIsNoPoseIsNamed) {
   const auto refused = [&](const std::string& content, const char* why) {
     expect_file_error([&] { read_poses(folder.write("a.txt", content)); }, {"a.txt", why});
   };
-  refused("", "numbers");
+  refused("", "the file is empty");
   refused("1 2 3\n", "3 numbers");
   refused("0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 3\n", "line 3: a quaternion of length 3");
   refused("1 0 0 7 0 1 0 8 0 0 1 9\n2 0 0 7 0 2 0 8 0 0 2 9\n", "line 2: not a rigid motion");

@@ -112,17 +112,19 @@ TEST(HiddenPoints, AStrayPointDoesNotSpoilIt) {
   }
 }
 
+const Vector3d corner(-3.5, -2.5, -1);  // of the room: near some walls and far from others
+
 /// As a scanner at the origin of its own frame has it.
 Points room_about_the_scanner(std::size_t count) {
-  Points room = room_seen_from(eye, count);
-  for (Vector3d& point : room) point -= eye;
+  Points room = room_seen_from(corner, count);
+  for (Vector3d& point : room) point -= corner;
   return room;
 }
 
 TEST(ViewpointAtOrigin, BelievedWhereTheCloudLooksLikeOneScanFromThere) {
   const ViewpointFinding found = find_viewpoint(room_about_the_scanner(60000), {});
   EXPECT_EQ(found.viewpoint, Vector3d::Zero()) << found.reason;
-  EXPECT_NE(found.reason.find("though the file does not say it: from its origin 0."), std::string::npos)
+  EXPECT_NE(found.reason.find("though the file does not say it: from its origin "), std::string::npos)
       << found.reason;
   EXPECT_EQ(found.warning, "");
 }
@@ -153,7 +155,7 @@ TEST(ViewpointAtOrigin, UnknownInDoubt) {
   expect_reason(room_seen_from(eye, 60000), "");  // a metre beside the scanner
   Points fused = room_about_the_scanner(60000);
   const Vector3d other(2.8, -1.5, 0.1);
-  for (const Vector3d& point : room_seen_from(other, 60000, 2)) fused.push_back(point - eye);
+  for (const Vector3d& point : room_seen_from(other, 60000, 2)) fused.push_back(point - corner);
   expect_reason(fused, "hidden");
   Random random(3);
   Points ball;
