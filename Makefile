@@ -35,6 +35,7 @@ wheel: setup
 	/usr/bin/python3 -m venv build/wheel
 	CXX=c++ build/wheel/bin/pip wheel . --no-deps --wheel-dir dist  # the compiler of the presets: ccache knows its objects
 
+asan: test_packages += clang-14 libclang-rt-14-dev
 asan tsan:
 	@scripts/setup.sh $(test_packages)
 	cmake --preset $@
@@ -100,13 +101,13 @@ paper:
 # Every target for a minute. New inputs land in build/fuzz/inputs; a crash is written beside the Makefile and stops the
 # run.
 fuzz_seconds ?= 60
-fuzz_targets ?= ply pcd text transformation options table run align
+fuzz_targets ?= ply pcd text transformation options table run assignment archive align
 fuzz:
 	@scripts/setup.sh clang-14 libclang-rt-14-dev
-	cmake --preset fuzz
+	cmake --preset asan
 	cmake --build --preset fuzz
 	set -e; for target in $(fuzz_targets); do mkdir -p build/fuzz/inputs/$$target; \
-	  TMPDIR=/dev/shm build/fuzz/bin/$${target}_fuzzer -max_len=4096 -timeout=60 -max_total_time=$(fuzz_seconds) \
+	  TMPDIR=/dev/shm build/asan/bin/$${target}_fuzzer -max_len=4096 -timeout=60 -max_total_time=$(fuzz_seconds) \
 	    build/fuzz/inputs/$$target fuzz/corpus; done
 
 # One mistake at a time in the method's formulas: which test notices? Hours for all of them; a part of it:

@@ -19,6 +19,8 @@ struct Field {
   std::string_view name;
   Member Class::*member;
 };
+template <typename Class, typename Member>
+Field(std::string_view, Member Class::*) -> Field<Class, Member>;  // Clang before 17 does not find it by itself
 
 template <typename Class>
 struct Layout {};

@@ -58,6 +58,14 @@ TEST(Toml, KeysOfManyPartsAreRefusedBeforeTheyFillTheStack) {
   EXPECT_NO_THROW(options_from_toml("# " + deep + "\nthreads = 1\n", "text"));
 }
 
+TEST(Toml, SectionsWithoutANameAreRefusedBeforeTheParserAborts) {
+  for (const std::string_view text : {"[.a]", "a.b = 1\n  [ = ]", "[[.a]]", "[[ .a ]]", "[", "[#]\n", "[\xc3\xa4]",
+                                      "[\r\n]", "\xEF\xBB\xBF[.a]"}) {
+    EXPECT_NE(message_of<FileError>(text).find("a section in brackets needs a name"), std::string::npos) << text;
+  }
+  EXPECT_EQ(options_from_toml("[ 'energy' ]\np1 = 2.0\n[\"keypoints\"]", "a.toml").energy.p1, 2.0);
+}
+
 TEST(Toml, AnyRealValuesReadBackExactly) {
   EXPECT_TRUE(rc::check([] {
     Options options;

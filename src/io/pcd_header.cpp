@@ -7,8 +7,8 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <ranges>
 #include <string_view>
+#include <vector>
 
 #include "io/header_lines.hpp"
 #include "io/number_text.hpp"
@@ -156,8 +156,10 @@ void require_coordinates(const InputFile& file, const PcdHeader& header) {
     const auto is_wanted = [&](const PcdField& field) { return coordinate_named(field.name) == wanted; };
     const auto found = std::ranges::count_if(header.fields, is_wanted);
     if (found != 1) {
+      std::vector<std::string_view> names;
+      for (const PcdField& field : header.fields) names.push_back(field.name);
       file.fail_at_line(fmt::format("{} fields named '{}' in the header, expected one; it has {}", found, name,
-                                    fmt::join(header.fields | std::views::transform(&PcdField::name), ", ")));
+                                    fmt::join(names, ", ")));
     }
     const auto count = std::ranges::find_if(header.fields, is_wanted)->count;
     if (count != 1) file.fail_at_line(fmt::format("field '{}' has COUNT {}, expected 1", name, count));

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ranges>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "io/header_lines.hpp"
 #include "io/number_text.hpp"
@@ -122,9 +122,10 @@ std::size_t find_vertex(const InputFile& file, const PlyHeader& header) {
     const auto found = std::ranges::count_if(
         vertex->properties, [&](const PlyProperty& p) { return !p.list_length && coordinate_named(p.name) == wanted; });
     if (found != 1) {
+      std::vector<std::string_view> names;
+      for (const PlyProperty& property : vertex->properties) names.push_back(property.name);
       file.fail_at_line(fmt::format("{} vertex properties named '{}' in the header, expected one; it has {}", found,
-                                    "xyz"[static_cast<std::size_t>(wanted)],
-                                    fmt::join(vertex->properties | std::views::transform(&PlyProperty::name), ", ")));
+                                    "xyz"[static_cast<std::size_t>(wanted)], fmt::join(names, ", ")));
     }
   }
   return static_cast<std::size_t>(vertex - header.elements.begin());

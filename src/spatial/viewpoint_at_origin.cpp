@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "spatial/hidden_points.hpp"
@@ -29,9 +31,8 @@ double ratio_of_ranges(PointView points) {
   std::vector<double> squares;
   squares.reserve(points.size());
   for (const Eigen::Vector3d& point : points) {
-    if (const double square = point.squaredNorm(); square > 0) squares.push_back(square);  // 0: nothing returned
+    squares.push_back(point.squaredNorm());
   }
-  if (squares.empty()) return 1;
   const auto rank = static_cast<std::ptrdiff_t>(squares.size() / 20);
   std::ranges::nth_element(squares, squares.begin() + rank);
   const double near = squares[rank];
@@ -54,7 +55,11 @@ double hidden_from_about(const TrimmedCloud& cloud, int resolution) {
 }  // namespace
 
 ViewpointFinding viewpoint_at_origin(PointView points) {
-  const TrimmedCloud cloud(points, "cloud");
+  bounds_of(points, "cloud");
+  Points returned;  // scanners put what they did not see there, and from beside it would hide little
+  std::ranges::copy_if(points, std::back_inserter(returned), [](const auto& point) { return !point.isZero(0); });
+  if (returned.empty()) return unknown("there is nothing beside its origin");
+  const TrimmedCloud cloud(returned, "cloud");
   const Bounds& bounds = cloud.bounds();
   if ((bounds.min.array() >= 0).any() || (bounds.max.array() <= 0).any()) {
     return unknown("its origin lies outside of the cloud");

@@ -124,8 +124,7 @@ Points room_about_the_scanner(std::size_t count) {
 TEST(ViewpointAtOrigin, BelievedWhereTheCloudLooksLikeOneScanFromThere) {
   const ViewpointFinding found = find_viewpoint(room_about_the_scanner(60000), {});
   EXPECT_EQ(found.viewpoint, Vector3d::Zero()) << found.reason;
-  EXPECT_NE(found.reason.find("though the file does not say it: from its origin "), std::string::npos)
-      << found.reason;
+  EXPECT_NE(found.reason.find("though the file does not say it: from its origin "), std::string::npos) << found.reason;
   EXPECT_EQ(found.warning, "");
 }
 
@@ -162,7 +161,7 @@ TEST(ViewpointAtOrigin, UnknownInDoubt) {
   for (int i = 0; i < 20000; ++i) ball.push_back(random.direction());
   expect_reason(ball, "about equally far");
   expect_reason(room_about_the_scanner(500), "too few");
-  expect_reason(Points(100, Vector3d::Zero()), "outside");
+  expect_reason(Points(100, Vector3d::Zero()), "nothing beside its origin");
 }
 
 TEST(ParseViewpoint, EveryForm) {

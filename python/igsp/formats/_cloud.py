@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import importlib
 import os
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -34,6 +37,23 @@ def require(module: str, path: PathLike, extra: str) -> Any:
         raise MissingPackageError(
             f"{os.fspath(path)}: this format needs the package '{module}': pip install 'igsp[{extra}]'", name=module
         ) from error
+
+
+@contextmanager
+def faults_of_package(path: PathLike, where: Callable[[], str]) -> Iterator[None]:
+    """What a package raises over a file is the file's fault, and no list of it is complete: a division by zero in a
+    table of dimensions, a panic of a decoder (which is no Exception)."""
+    try:
+        yield
+    except (OSError, MemoryError):
+        raise
+    except BaseException as error:
+        if not isinstance(error, Exception) and type(error).__name__ != "PanicException":
+            raise
+        reason = (str(error).splitlines() or [type(error).__name__])[0]  # the rest is for the package's authors
+        lacking = re.search("not supported|is unknown", reason)
+        advice = "write the file anew with another program" if lacking else "cut short or damaged?"
+        raise FormatError(path, f"{where()}: {reason}: {advice}") from error
 
 
 @dataclass(frozen=True)

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _las_layout
-from ._cloud import FormatError, Metadata, PathLike, Points, Scan, Selection, require
+from . import _las_layout, _laz_layout
+from ._cloud import FormatError, Metadata, PathLike, Points, Scan, Selection, faults_of_package, require
 from ._las_layout import Layout
 
 NOISE_CLASSES = (7, 18)  # low and high noise, table 17 of the LAS 1.4 specification
 FIRST_WITH_FLAGS = 6  # of the point formats, those that have a byte for flags; before, three bits beside the class
 WITHHELD = 4
+BYTES_AT_ONCE = 1 << 28  # of records, before a single one of them has been seen
 
 
 def describe(path: PathLike, layout: Layout, metadata: Metadata) -> None:
@@ -60,25 +60,23 @@ def read_records(path: PathLike, layout: Layout, points_per_chunk: int, points_o
     laspy = require("laspy", path, "las")
     if layout.compressed:
         require("lazrs", path, "las")
+        _laz_layout.check(path, layout)
+    points_per_chunk = min(points_per_chunk, max(1, BYTES_AT_ONCE // layout.record_length))
     fields = laspy.DecompressionSelection.all()
     if points_only:  # spares LAZ of point formats 6 to 10 the decompression of the rest
         fields = laspy.DecompressionSelection.base().decompress_z().decompress_classification().decompress_flags()
     total = 0
-    try:
-        with laspy.open(
+    with (
+        faults_of_package(path, lambda: f"after point {total} of {layout.point_count}"),
+        laspy.open(
             path, laz_backend=laspy.LazBackend.LazrsParallel, read_evlrs=False, decompression_selection=fields
-        ) as reader:
-            while total < layout.point_count:
-                records = reader.read_points(points_per_chunk).array
-                if not len(records):
-                    break
-                total += len(records)
-                yield records
-    except (laspy.LaspyException, RuntimeError, ValueError, OverflowError) as error:
-        if re.search("not supported|unknown|unsupported", str(error), re.IGNORECASE):
-            fault = f"this variant of LAZ is not supported ({error}): write it anew as LAS or LAZ 1.4, with PDAL or LAStools"
-            raise FormatError(path, fault) from error
-        fault = f"after point {total} of {layout.point_count}: {error}: cut short or damaged?"
-        raise FormatError(path, fault) from error
+        ) as reader,
+    ):
+        while total < layout.point_count:
+            records = reader.read_points(points_per_chunk).array
+            if not len(records):
+                break
+            total += len(records)
+            yield records
     if total != layout.point_count:
         raise FormatError(path, f"the file ends after {total} of {layout.point_count} points")
