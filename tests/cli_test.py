@@ -529,7 +529,7 @@ class Evaluate(CommandTest):
             line = "{} {} {} {} 0 0 {} {}\n"
             half = [np.arctan2(rotation[1, 0], rotation[0, 0]) / 2 for _, rotation, _ in poses]
             return self.file(name, "# time x y z qx qy qz qw\n" + "".join(
-                line.format(time, *shift, np.sin(h), np.cos(h)) for (time, _, shift), h in zip(poses, half)))
+                line.format(time, *shift, np.sin(h), np.cos(h)) for (time, _, shift), h in zip(poses, half, strict=True)))
 
         moved = [(time + 1e-4, world[0] @ r, world[0] @ t + world[1]) for time, r, t in truth]
         tum("truth.tum", truth)
