@@ -2,9 +2,10 @@
 registered from the true pose; the error of the pose, squared and normalised by the stated covariance, against chi-square.
 
 Prints a row a scene: draws that were registered, median of the normalised squared error over that of chi-square (1 is right,
-more is too sure), and the share of draws inside of the stated 95 % ellipsoid. With --csv the single draws as well.
+more is too sure), the share of draws inside of the stated 95 % ellipsoid, and how much of the squared error
+is the same in all draws: a bias of the scene, not noise. With --csv the single draws as well.
 
-usage: covariance.py IGSP [--draws 200] [--points 10000] [--scenes park,indoor,object] [--dof 6] [--csv FILE]
+usage: covariance.py IGSP [--draws 200] [--points 40000] [--scenes park,indoor,object] [--dof 6] [--csv FILE]
 """
 import argparse
 import csv
@@ -20,7 +21,7 @@ from scipy.stats import chi2
 
 # Scene: standard deviation of the noise along the ray [m], as the simulated scanners have it.
 NOISE = {"park": 0.01, "indoor": 0.003, "object": 0.0001}
-DENSE = 20  # times as many points as are drawn, so that two draws share few
+DENSE = 5  # times as many points as are drawn, so that two draws share few
 
 
 def read_ply(path):
@@ -50,22 +51,20 @@ def error_of(run, truth):
     return np.concatenate([Rotation.from_matrix(delta[:3, :3]).as_rotvec(), delta[:3, :3] @ centre + delta[:3, 3] - centre])
 
 
-def normalised_square(run, truth, dof):
-    used = [2, 3, 4, 5] if dof == 4 else range(6)
-    covariance = np.array(run["precision"]["covariance"])[np.ix_(used, used)]
-    if dof == 4:  # rotations about x and y are known to be none
-        covariance = np.linalg.inv(np.array(run["precision"]["information"])[np.ix_(used, used)])
-    error = error_of(run, truth)[used]
-    return error @ np.linalg.solve(covariance, error)
+def whitened_error(run, truth, dof):
+    """(dof,) of independent unit normal numbers, if the covariance is right."""
+    used = [2, 3, 4, 5] if dof == 4 else range(6)  # with 4, rotations about x and y are known to be none
+    information = np.array(run["precision"]["information"])[np.ix_(used, used)]
+    return np.linalg.cholesky(information).T @ error_of(run, truth)[used]
 
 
-def squares_of(igsp, scene, arguments, folder):
+def errors_of(igsp, scene, arguments, folder):
     subprocess.run([igsp, "simulate", scene, "--points", str(DENSE * arguments.points), "--noise", "0", "--out", folder],
                    check=True, stdout=subprocess.DEVNULL)
     dense = [read_ply(folder / f"station_{i}.ply") for i in (1, 0)]
     truth = np.loadtxt(folder / "station_1_to_0.txt")
     random = np.random.default_rng(1)
-    squares = []
+    errors = []
     for _ in range(arguments.draws):
         for name, points in zip(("source", "target"), dense, strict=True):
             write_ply(folder / f"{name}.ply", drawn(points, arguments.points, NOISE[scene], random))
@@ -74,29 +73,35 @@ def squares_of(igsp, scene, arguments, folder):
                        check=False)
         run = json.loads((folder / "r.json").read_text())
         if run["verdict"] == "registered":
-            squares.append(normalised_square(run, truth, arguments.dof))
-    return np.array(squares)
+            errors.append(whitened_error(run, truth, arguments.dof))
+    return np.array(errors).reshape(-1, arguments.dof)
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("igsp", type=Path)
     parser.add_argument("--draws", type=int, default=200)
-    parser.add_argument("--points", type=int, default=10000)
+    parser.add_argument("--points", type=int, default=40000)
     parser.add_argument("--scenes", default="park,indoor,object")
     parser.add_argument("--dof", type=int, default=6, choices=[4, 6])
     parser.add_argument("--csv", type=Path)
     arguments = parser.parse_args()
     rows = []
-    print("| scene | points | registered of | median square / expected | inside 95 % | factor that would make it 95 % |")
-    print("|---|---|---|---|---|---|")
+    print("| scene | points | registered of | median square / expected | inside 95 % | factor that would make it 95 % "
+          "| same in all draws |")
+    print("|---|---|---|---|---|---|---|")
     for scene in arguments.scenes.split(","):
         with tempfile.TemporaryDirectory() as folder:
-            squares = squares_of(arguments.igsp.resolve(), scene, arguments, Path(folder))
+            errors = errors_of(arguments.igsp.resolve(), scene, arguments, Path(folder))
+        squares = (errors**2).sum(axis=1)
         limit = chi2.ppf(0.95, arguments.dof)
+        if len(squares) < 20:
+            print(f"| {scene} | {arguments.points} | {len(squares)} of {arguments.draws} | too few to say | | | |", flush=True)
+            continue
         print(f"| {scene} | {arguments.points} | {len(squares)} of {arguments.draws} | "
               f"{np.median(squares) / chi2.ppf(0.5, arguments.dof):.2f} | "
-              f"{100 * np.mean(squares < limit):.0f} % | {np.quantile(squares, 0.95) / limit:.2f} |", flush=True)
+              f"{100 * np.mean(squares < limit):.0f} % | {np.quantile(squares, 0.95) / limit:.2f} | "
+              f"{100 * (errors.mean(axis=0)**2).sum() / squares.mean():.0f} % |", flush=True)
         rows += [(scene, arguments.points, arguments.dof, f"{square:.6g}") for square in squares]
     if arguments.csv:
         with open(arguments.csv, "w", newline="") as file:

@@ -1,5 +1,5 @@
-// Sparse assignment problems out of arbitrary bytes: the optimum of the padded dense one, with its proof, or a refusal of
-// what is no problem.
+// Sparse assignment problems out of arbitrary bytes: the optimum of the padded dense one, with its proof, or a refusal
+// of what is no problem.
 #include "bytes.hpp"
 #include "fuzzing.hpp"
 #include "matching/assignment_oracles.hpp"
@@ -19,8 +19,8 @@ igsp::AssignmentProblem problem_of(igsp::fuzzing::Bytes& bytes) {
     cell += bytes.byte() % steps + (wild ? 0 : 1);
     const std::size_t source = (cell - 1) / problem.targets, target = (cell - 1) % problem.targets;
     if (source >= problem.sources) break;
-    const std::int64_t cost = wild ? bytes.take<std::int64_t>()
-                                   : bytes.take<std::uint16_t>() % std::max<std::int64_t>(1, problem.threshold);
+    const std::int64_t cost =
+        wild ? bytes.take<std::int64_t>() : bytes.take<std::uint16_t>() % std::max<std::int64_t>(1, problem.threshold);
     if (cost >= problem.threshold && !wild) break;
     problem.edges.push_back({static_cast<std::uint32_t>(source), static_cast<std::uint32_t>(target), cost});
   }

@@ -42,7 +42,8 @@ class Bytes {
   std::size_t size_;
 };
 
-/// Single points, and flat pieces of a surface, so that keypoints, frames and matches come of it; at most `most` things.
+/// Single points, and flat pieces of a surface, so that keypoints, frames and matches come of it; at most `most`
+/// things.
 inline Points cloud(Bytes& bytes, std::size_t most) {
   constexpr std::size_t most_points = 3000;
   Points points;

@@ -93,6 +93,30 @@ bool is_nameless_section(std::string_view line) {
   return !(std::isalnum(letter) || std::string_view("_-\"']").find(line[name]) != std::string_view::npos);
 }
 
+// Beyond ASCII outside of strings and comments: no name has that, and the parser's tables of letters have gaps into
+// which it falls.
+bool has_foreign_letter(std::string_view line) {
+  char quote = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (quote != 0) {
+      if (line[i] == quote) quote = 0;
+      if (line[i] == '\\' && quote == '"') ++i;
+    } else if (line[i] == '#') {
+      return false;
+    } else if (line[i] == '"' || line[i] == '\'') {
+      quote = line[i];
+    } else if (static_cast<unsigned char>(line[i]) > 127) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Strings of several lines, which no option takes: what is inside and what outside shows in no single line.
+bool opens_long_string(std::string_view line) {
+  return line.find("\"\"\"") != std::string_view::npos || line.find("'''") != std::string_view::npos;
+}
+
 // What the parser itself does not survive.
 void check_lines(std::string_view text, std::string_view name) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
@@ -105,6 +129,8 @@ void check_lines(std::string_view text, std::string_view name) {
     if (first == std::string_view::npos || line[first] == '#') continue;
     const auto fail = [&](std::string_view fault) { throw FileError(fmt::format("{}:{}: {}", name, number, fault)); };
     if (is_deep(line)) fail("more than 32 dots: an option is called section.name");
+    if (opens_long_string(line)) fail("an option takes no string of several lines");
+    if (has_foreign_letter(line)) fail("letters outside of ASCII belong into comments and strings");
     if (is_nameless_section(line.substr(first))) fail("a section in brackets needs a name: [section]");
   }
 }
