@@ -247,6 +247,19 @@ class Registered(PageTest):
         far = self.pixels()
         self.assertLess(near["grey"] / near["drawn"], 0.5 * far["grey"] / far["drawn"])
 
+    def test_contradicted_points_are_marked_where_viewpoints_are_known(self):
+        self.toggle("compare")
+        self.toggle("show-matches")
+        self.press("step", Keys.HOME)
+        plain = self.pixels()
+        self.toggle("show-contradicting")
+        marked = self.pixels()  # magenta is neither the red of the source nor the blue of the target
+        self.assertLess(marked["red"], 0.98 * plain["red"])
+        self.toggle("show-contradicting")
+        self.assertEqual(self.pixels()["sum"], plain["sum"])
+        self.open("line.html")
+        self.assertFalse(self.find("contradicting-group").is_displayed())
+
     def test_before_and_after_beside_each_other(self):
         self.toggle("compare")
         self.assertEqual(self.find("before-label").text, "As given")

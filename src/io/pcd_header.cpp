@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -128,6 +129,15 @@ FileFormat parse_data(const InputFile& file, const Entries& entries) {
   file.fail_at_line(data.line, "expected 'DATA ascii', 'DATA binary' or 'DATA binary_compressed'");
 }
 
+std::optional<Eigen::Vector3d> find_viewpoint(const Entries& entries) {
+  const auto found = entries.find("VIEWPOINT");
+  if (found == entries.end()) return std::nullopt;
+  const std::vector<std::string_view> words(found->second.values.begin(), found->second.values.end());
+  const auto pose = parse_pcd_pose(words);
+  if (!pose || *pose == default_pcd_pose) return std::nullopt;
+  return Eigen::Vector3d((*pose)[0], (*pose)[1], (*pose)[2]);
+}
+
 /// 0.7, .7 and older; what calls itself 1.0 or more is made by other rules.
 void require_version(const InputFile& file, const Entries& entries) {
   const auto found = entries.find("VERSION");
@@ -158,6 +168,17 @@ void require_coordinates(const InputFile& file, const PcdHeader& header) {
 
 }  // namespace
 
+std::optional<PcdPose> parse_pcd_pose(std::span<const std::string_view> words) {
+  PcdPose pose{};
+  if (words.size() != pose.size()) return std::nullopt;
+  for (std::size_t i = 0; i < pose.size(); ++i) {
+    const auto value = parse_number<double>(words[i]);
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    pose[i] = *value;
+  }
+  return pose;
+}
+
 PcdHeader read_pcd_header(InputFile& file) {
   const Entries entries = read_entries(file);
   require_version(file, entries);
@@ -165,6 +186,7 @@ PcdHeader read_pcd_header(InputFile& file) {
   header.format = parse_data(file, entries);
   header.fields = parse_fields(file, entries);
   header.points = parse_points(file, entries);
+  header.viewpoint = find_viewpoint(entries);
   for (const PcdField& field : header.fields) scalar_type_of(file, field);
   require_coordinates(file, header);
   return header;

@@ -83,6 +83,18 @@ def test_file_that_shrinks_while_it_is_read(tmp_path: Path) -> None:
         list(reader)
 
 
+@pytest.mark.parametrize(("offset", "value"), [(0, 1), (0, 9), (34, 77), (38, 99)])  # compressor, an item, its version
+def test_variants_of_laz_that_the_codec_lacks_are_not_called_damaged(tmp_path: Path, offset: int, value: int) -> None:
+    source = tmp_path / "source.laz"
+    make_las(random_points(50), 1).write(source)
+    content = bytearray(source.read_bytes())
+    record = content.index(b"laszip encoded") - 2 + 54
+    struct.pack_into("<H", content, record + offset, value)
+    source.write_bytes(content)
+    with pytest.raises(formats.FormatError, match="(not supported|is unknown).*: write (it|the file) anew"):
+        formats.read_cloud(source)
+
+
 def laz_content(folder: Path) -> tuple[bytearray, int, int]:
     """A LAZ file, where its points begin, and where the record of its compression stands."""
     make_las(random_points(50), 6).write(folder / "whole.laz")

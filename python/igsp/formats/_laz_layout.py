@@ -15,6 +15,7 @@ from ._las_layout import Layout
 USER, NUMBER = "laszip encoded", 22204  # of the record
 RECORD = struct.Struct("<HHBBHIIqqH")  # compressor, coder, version (4 parts), options, chunk size, 2 unused, items
 ITEM = struct.Struct("<HHH")  # type, bytes, version
+CHUNKED = (2, 3)  # compressors of points, and of layers of points; 1, of old programs, has no chunks
 TABLE = struct.Struct("<II")  # version, number of chunks
 
 
@@ -38,7 +39,10 @@ def _check_items(path: PathLike, layout: Layout, record: tuple[int, bytes]) -> N
     start, content = record
     if len(content) < RECORD.size:
         raise FormatError(path, f"byte {start}: a record of {len(content)} bytes cannot describe the compression")
-    count = RECORD.unpack_from(content)[-1]
+    compressor, *_, count = RECORD.unpack_from(content)
+    if compressor not in CHUNKED:
+        fault = f"compressor {compressor} of LAZ is not supported: write it anew as LAS or LAZ 1.4, with PDAL or LAStools"
+        raise FormatError(path, fault)
     if len(content) < RECORD.size + count * ITEM.size:
         raise FormatError(path, f"byte {start}: {count} items do not fit into the record of the compression")
     size = sum(item[1] for item in ITEM.iter_unpack(content[RECORD.size : RECORD.size + count * ITEM.size]))
