@@ -1,65 +1,51 @@
-// Two clouds out of arbitrary bytes, and options out of them: a documented error, or a proper rotation and a verdict.
+// Two clouds, viewpoints and options out of arbitrary bytes: a documented error, or a proper rotation and a verdict.
 #include <cmath>
-#include <cstring>
+#include <optional>
 
+#include "bytes.hpp"
+#include "config/option_list.hpp"
 #include "fuzzing.hpp"
 #include "igsp/align.hpp"
 
 namespace {
 
-/// Bytes one after the other; zeros when they are used up.
-class Bytes {
- public:
-  Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
-  bool empty() const { return size_ == 0; }
-  std::uint8_t byte() { return take<std::uint8_t>(); }
-  double number() { return take<double>(); }
+using igsp::fuzzing::Bytes;
+using igsp::fuzzing::require;
 
-  /// Mostly a coordinate as clouds have them, in steps that coincide; sometimes any double there is.
-  double coordinate() {
-    const std::uint8_t kind = byte();
-    return kind < 250 ? 0.1 * byte() + 0.001 * kind : number();
+/// A value of an option's range, near its lower end more often; sometimes any double.
+igsp::OptionValue value_of(const igsp::Option& option, Bytes& bytes) {
+  switch (option.kind) {
+    case igsp::OptionKind::boolean:
+      return bytes.byte() % 2 == 1;
+    case igsp::OptionKind::choice:
+      return std::string(option.choices[bytes.byte() % option.choices.size()]);
+    case igsp::OptionKind::integer:
+      return static_cast<int>(bytes.take<std::uint16_t>()) - 2;
+    case igsp::OptionKind::real:
+      break;
   }
-
- private:
-  template <typename T>
-  T take() {
-    T value{};
-    const std::size_t count = std::min(sizeof(T), size_);
-    std::memcpy(&value, data_, count);
-    data_ += count, size_ -= count;
-    return value;
-  }
-
-  const std::uint8_t* data_;
-  std::size_t size_;
-};
-
-igsp::Points points_of(Bytes& bytes, std::size_t most) {
-  igsp::Points points;
-  while (points.size() < most && !bytes.empty()) {
-    const double x = bytes.coordinate(), y = bytes.coordinate(), z = bytes.coordinate();
-    points.emplace_back(x, y, z);
-  }
-  return points;
+  const std::uint8_t kind = bytes.byte();
+  return kind < 200 ? 0.05 * kind * bytes.byte() : bytes.number();
 }
 
 igsp::Options options_of(Bytes& bytes) {
   igsp::Options options;
-  options.threads = 1;
-  const std::uint8_t kind = bytes.byte();
-  if (kind & 1) options.degrees_of_freedom = 4;
-  if (kind & 2) options.search = igsp::Search::direct;
-  if (kind & 4) options.scale.voxel_size = 0.1 + 0.1 * bytes.byte();
-  if (kind & 8) options.scale.voxel_size = bytes.number();
-  if (kind & 16) options.keypoints.min_neighbours = bytes.byte() % 8;
   options.hypotheses.max_proposed = 20;
   options.hypotheses.max_refined = 5;
+  for (std::uint8_t left = bytes.byte() % 6; left > 0; --left) {
+    const igsp::Option& option = igsp::option_list()[bytes.byte() % igsp::option_list().size()];
+    option.set(options, value_of(option, bytes));  // unchecked: align must do that
+  }
+  options.threads = 1;
   return options;
 }
 
+std::optional<Eigen::Vector3d> viewpoint_of(Bytes& bytes) {
+  if (bytes.byte() % 2 == 0) return {};
+  return bytes.point();
+}
+
 void check(const igsp::Result& result) {
-  using igsp::fuzzing::require;
   require(!result.reason.empty());
   require(std::isfinite(result.confidence) && result.confidence >= 0 && result.confidence <= 1);
   if (result.registered) require(result.has_estimate);
@@ -74,11 +60,12 @@ void check(const igsp::Result& result) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Bytes bytes(data, size);
   const igsp::Options options = options_of(bytes);
+  const auto source_viewpoint = viewpoint_of(bytes), target_viewpoint = viewpoint_of(bytes);
   const std::size_t sources = bytes.byte();
-  const igsp::Points source = points_of(bytes, sources), target = points_of(bytes, 4096);
+  const igsp::Points source = igsp::fuzzing::cloud(bytes, sources), target = igsp::fuzzing::cloud(bytes, 4096);
   try {
-    check(igsp::align(source, target, options));
-    check(igsp::align(source, source, options));
+    check(igsp::align({source, source_viewpoint}, {target, target_viewpoint}, options));
+    check(igsp::align({source, source_viewpoint}, {source, source_viewpoint}, options));
   } catch (const igsp::InvalidArgument&) {
   }
   return 0;

@@ -70,6 +70,7 @@ MUTANTS = [
     ("features/bsc.cpp", "rho > 0.1f", "rho > 0.5f", "threshold of occupied cells"),
     ("features/bsc.cpp", "comparison_bits(density) & ~empty_pairs", "comparison_bits(density)", "pairs of empty cells"),
     ("features/bsc.cpp", "{a.data(), c.data(), b.data()}", "{a.data(), b.data(), c.data()}", "second plane"),
+    ("spatial/voxel_grid.cpp", "voxel.carries += 1u << (carry_bits * axis)", "voxel.carries += 0u", "sum of a voxel beyond 64 bits"),
     # Candidates and their consistency
     ("matching/candidates.cpp", "(mean - value) / sigma", "(value - mean) / sigma", "smaller distances stand out"),
     ("matching/candidates.cpp", "target_frame * flipped_source.transpose()", "flipped_source * target_frame.transpose()", "direction of a candidate's rotation"),
@@ -79,11 +80,11 @@ MUTANTS = [
     ("matching/geometric_consistency.cpp", "options.max_angle_rad / 2", "options.max_angle_rad", "half angle of a quaternion"),
     ("matching/geometric_consistency.cpp", "limits.length_tolerance * limits.length_tolerance * sum2", "limits.length_tolerance * sum2", "tolerance of lengths"),
     # Contact and verdict
-    ("registration/surface_contact.cpp", "touching = 1.5;", "touching = 4.5;", "what touches"),
+    ("registration/surface_contact.cpp", "touching = 1.0;", "touching = 4.0;", "what touches"),
     ("registration/surface_contact.cpp", "touching_weight += weight;", "touching_weight += 1.0;", "weights of contact"),
     ("registration/surface_contact.cpp", "* n + 2) / (n + 4)", "* n) / n", "few places prove little"),
-    ("registration/verdict.cpp", "odds(even_quality - pose.quality)", "odds(pose.quality - even_quality)", "sign of the quality"),
-    ("registration/verdict.cpp", "1.0 / (1.0 + chance_odds + rival_odds)", "1.0 / (1.0 + chance_odds)", "rivals"),
-    ("registration/verdict.cpp", "std::min(result.confidence, 0.1)", "result.confidence", "free directions"),
+    ("registration/pose_assessment.cpp", "std::pow(10.0, demanded - quality)", "std::pow(10.0, quality - demanded)", "sign of the quality"),
+    ("registration/verdict.cpp", "1.0 / (1.0 + judgement.pose.chance_odds() + judgement.rival_odds)", "1.0 / (1.0 + judgement.pose.chance_odds())", "rivals"),
+    ("registration/verdict.cpp", "std::min(confidence, 0.1)", "confidence", "free directions"),
     ("registration/verdict.cpp", "result.confidence >= 0.5", "result.confidence >= 0.05", "level of the verdict"),
 ]

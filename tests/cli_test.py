@@ -2,6 +2,7 @@
 import json
 import os
 import pty
+import re
 import signal
 import subprocess
 import sys
@@ -192,6 +193,28 @@ class Align(CommandTest):
         self.assertNotIn("not used", run.stderr)
         report = json.loads((self.folder / "r.json").read_text())
         self.assertEqual(report["source"]["viewpoint"], [-5.5, 0, 0])
+
+    def test_auto_takes_the_viewpoint_from_the_file(self):
+        self.igsp("align", self.source, self.target, "--report", "r.json", "-o", "a.ply", "--transform", "T.txt")
+        report = json.loads((self.folder / "r.json").read_text())
+        for cloud in ["source", "target"]:  # the simulation writes it
+            self.assertEqual(report[cloud]["viewpoint"], [0, 0, 0])
+            self.assertEqual(report[cloud]["viewpoint_because"], "the file says so")
+        moved = self.igsp("info", "a.ply").stdout
+        words = re.search(r"scanner +at (\S+) (\S+) (\S+): the file says so\n", moved).groups()
+        np.testing.assert_allclose([float(w) for w in words], np.loadtxt(self.folder / "T.txt")[:3, 3], rtol=1e-6)
+        self.igsp("align", self.source, self.target, "-o", "a.pcd")
+        self.assertIn("the file says so", self.igsp("info", "a.pcd").stdout)
+
+    def test_auto_believes_the_origin_where_the_cloud_agrees(self):
+        points = read_ply(self.source)[0]
+        silent = self.igsp("info", self.cloud("silent.ply", points)).stdout
+        self.assertRegex(silent, r"scanner +at 0 0 0: believed, though the file does not say it: from its origin "
+                                 r"\d\.\d % of the points are hidden behind others, from places about it \d+")
+        shifted = self.igsp("info", self.cloud("shifted.ply", points + [5, 0, 0])).stdout
+        self.assertIn("scanner               unknown: the file does not say, and", shifted)
+        fused = np.vstack([points + [4, 0, 0], points @ np.diag([-1, -1, 1]) - [4, 0, 0]])
+        self.assertIn("scanner               unknown: ", self.igsp("info", self.cloud("fused.ply", fused)).stdout)
 
     def test_survey_coordinates_are_written_as_doubles(self):
         offset = np.array([500000.0, 5000000.0, 300.0])
@@ -496,6 +519,42 @@ class Evaluate(CommandTest):
         self.matrix("truth.txt", np.eye(3), [0, 0, 0])
         error = json.loads(self.igsp("evaluate", "--transform", "T.txt", "--truth", "truth.txt", "--json").stdout)
         self.assertAlmostEqual(error["e_r_deg"] / np.degrees(1e-9), 1, 6)
+
+    def test_trajectories_in_the_forms_of_tum_and_kitti(self):
+        rng = np.random.default_rng(1)
+        truth = [(0.5 * i, rotation_z(0.3 * i), rng.uniform(-5, 5, 3)) for i in range(6)]
+        world = rotation_z(1.0), np.array([10, 20, 30.0])  # the estimate has a frame of its own
+
+        def tum(name, poses):
+            line = "{} {} {} {} 0 0 {} {}\n"
+            half = [np.arctan2(rotation[1, 0], rotation[0, 0]) / 2 for _, rotation, _ in poses]
+            return self.file(name, "# time x y z qx qy qz qw\n" + "".join(
+                line.format(time, *shift, np.sin(h), np.cos(h)) for (time, _, shift), h in zip(poses, half, strict=True)))
+
+        moved = [(time + 1e-4, world[0] @ r, world[0] @ t + world[1]) for time, r, t in truth]
+        tum("truth.tum", truth)
+        tum("same.tum", moved[::-1])  # in any order
+        arguments = ["evaluate", "--truth", "truth.tum", "--json", "--transform"]
+        error = json.loads(self.igsp(*arguments, "same.tum", "--write", "same.kitti").stdout)
+        self.assertEqual(error["poses"], 6)
+        for value in [error["absolute"]["max"], error["relative"]["e_t"]["max"], error["relative"]["e_r_deg"]["max"]]:
+            self.assertLess(value, 1e-5)
+        kitti = np.loadtxt(self.folder / "same.kitti").reshape(-1, 3, 4)
+        np.testing.assert_allclose(kitti[:, :, 3], [t for _, _, t in moved[::-1]], atol=1e-12)
+        np.testing.assert_allclose(kitti[:, :, :3], [r for _, r, _ in moved[::-1]], atol=1e-12)
+        wrong = [(time, rotation_z(0.3 * i + (0.1 if i == 3 else 0)), shift) for i, (time, _, shift) in enumerate(truth)]
+        tum("wrong.tum", wrong[:5])
+        error = json.loads(self.igsp(*arguments, "wrong.tum").stdout)
+        self.assertEqual(error["poses"], 5)
+        self.assertAlmostEqual(error["relative"]["e_r_deg"]["max"], np.degrees(0.1), 6)
+        self.assertLess(error["absolute"]["rmse"], 1e-9)
+        self.assertIn("poses     5 in both files", self.igsp(*arguments[:3], "--transform", "wrong.tum").stdout)
+        self.refuses("evaluate", "--truth", "truth.tum", "--transform", tum("later.tum", [(99.0, np.eye(3), np.zeros(3))]),
+                     code=2, saying="0 of 1 and 6 poses are of the same time")
+        self.refuses("evaluate", "--truth", "truth.tum", "--transform", self.file("long.tum", "0 1 2 3 0 0 0 2\n" * 3),
+                     code=3, saying=["long.tum", "line 1", "quaternion of length 2"])
+        self.refuses("evaluate", "--truth", "truth.tum", "--transform", "same.kitti", "--write", "a.txt", code=2,
+                     saying="6 poses need a name in .tum or .kitti")
 
     def test_what_is_no_transformation(self):
         self.matrix("truth.txt", np.eye(3), [0, 0, 0])

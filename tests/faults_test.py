@@ -17,6 +17,23 @@ from cli_test import IGSP, CommandTest, read_ply, setUpModule  # noqa: F401, the
 
 NOBODY = 65534
 
+# In place of the system's: large files cannot be read from an offset on.
+FAILING_READ = """
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+ssize_t read(int file, void* to, size_t count) {
+  ssize_t (*original)(int, void*, size_t) = (ssize_t (*)(int, void*, size_t))dlsym(RTLD_NEXT, "read");
+  struct stat status;
+  int large = fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 150000;
+  if (large && lseek(file, 0, SEEK_CUR) >= atol(getenv("FAIL_AFTER"))) return errno = EIO, -1;
+  return original(file, to, count);
+}
+"""
+
 
 class StandardStreams(CommandTest):
     """An answer that nobody gets is no success."""
@@ -92,6 +109,29 @@ class Signals(CommandTest):
                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, 1 << 20)))
         self.assertEqual((run.returncode, run.stderr), (3, "igsp: a.xyz: cannot write: File too large\n"))
         self.assertEqual(os.listdir(self.folder), ["large.ply"])
+
+    def test_no_output_is_left_half_written(self):
+        """Every file that a command writes, at a limit that the largest of them passes."""
+        self.file("cases.csv", "name,source,target,truth,max_rotation_error_deg,max_translation_error_m\n"
+                               f"one,{self.source},{self.target},none,0,0\n")
+        pair = ["align", self.source, self.target]
+        self.igsp(*pair, "--report", "run.json")
+        for command, output in [([*pair, "-o"], "a.ply"), ([*pair, "-o"], "a.pcd"), ([*pair, "-o"], "a.csv"),
+                                ([*pair, "--html"], "a.html"), ([*pair, "--report"], "a.json"),
+                                ([*pair, "--transform"], "a.txt"), (["report", "run.json", "-o"], "b.html"),
+                                (["simulate", "object", "--points", "3000", "--out"], "scans"),
+                                (["benchmark", "cases.csv", "--export"], "exported")]:
+            before = set(os.listdir(self.folder))
+            run = subprocess.run([IGSP, *map(str, command), output], capture_output=True, text=True, cwd=self.folder,
+                                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (64, 64)))
+            self.assertEqual(run.returncode, 3, (command, output, run.stderr))
+            self.assertRegex(run.stderr, "^igsp: .*: cannot write: File too large\n$")
+            self.assertIn(output, run.stderr)
+            made = set(os.listdir(self.folder)) - before
+            self.assertLessEqual(made, {"scans", "exported"}, command)  # folders, which are made first
+            for folder in made:
+                for path in (self.folder / folder).rglob("*"):
+                    self.assertTrue(path.is_dir(), path)
 
     def test_without_a_terminal_that_ends_it_nohup_runs_on(self):
         process = subprocess.Popen(["nohup", IGSP, *map(str, self.large_run()), "a.xyz"], stdout=subprocess.DEVNULL,
@@ -185,6 +225,46 @@ class Streaming(CommandTest):
         rows = np.concatenate([np.zeros((200_000, 3)), read_ply(self.source)[0]])
         mixed = self.cloud("mixed.ply", rows)
         self.igsp("align", mixed, self.target, "--max-points", "10000")
+
+
+class ChangingInputs(CommandTest):
+    """A file that changes while it is read: an error that says so or the points that are there, never a crash."""
+
+    def test_a_disk_that_fails_half_way(self):
+        source = self.file("failing.c", FAILING_READ)
+        library = self.folder / "failing.so"
+        subprocess.run(["cc", "-shared", "-fPIC", "-o", library, source, "-ldl"], check=True)
+        np.savetxt(self.folder / "a.xyz", read_ply(self.source)[0])
+        for name in [self.source, "a.xyz"]:
+            for after in [0, 200_000]:
+                run = subprocess.run([IGSP, "align", name, self.target, "-o", "b.xyz"], capture_output=True, text=True,
+                                     cwd=self.folder, env={"LD_PRELOAD": str(library), "FAIL_AFTER": str(after)})
+                self.assertEqual(run.returncode, 3, run.stderr)
+                self.assertRegex(run.stderr, "^igsp: .*: byte offset \\d+: cannot read: Input/output error\n$")
+        self.assertFalse((self.folder / "b.xyz").exists())
+
+    def test_cut_or_grown_while_it_is_read(self):
+        rows = np.tile(read_ply(self.source)[0], (20, 1))
+        for kind in ["large.ply", "large.xyz"]:
+            path = self.folder / kind
+            if kind.endswith(".ply"):
+                self.cloud(kind, rows)
+            else:
+                np.savetxt(path, rows, fmt="%.4f")
+            content = path.read_bytes()
+            for change in [content[: len(content) // 2], content + content[len(content) // 2 :], b""]:
+                for delay in [0, 0.01, 0.03, 0.1]:
+                    path.write_bytes(content)
+                    process = subprocess.Popen([IGSP, "info", path], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                               text=True, cwd=self.folder)
+                    time.sleep(delay)
+                    with open(path, "r+b") as file:
+                        file.truncate(min(len(change), len(content)))
+                        file.seek(0, os.SEEK_END)
+                        file.write(change[len(content) :])
+                    _, said = process.communicate()
+                    self.assertIn(process.returncode, [0, 3], said)
+                    self.assertEqual(said.count("\n"), int(process.returncode == 3), said)
 
 
 class Resources(CommandTest):

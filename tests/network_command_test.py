@@ -81,7 +81,7 @@ class NetworkCommand(unittest.TestCase):
         edges = [line for line in lines if line[0] == "EDGE_SE3:QUAT"]
         used = [link for link in self.rows("links.csv") if link["state"] in ("used", "unconfirmed")]
         self.assertEqual(len(edges), len(used))
-        for edge, link in zip(edges, used):
+        for edge, link in zip(edges, used, strict=True):
             self.assertEqual(len(edge), 3 + 7 + 21)
             self.assertTrue(link["target"].endswith(f"station_{edge[1]}.ply"))
             self.assertEqual(edge[3:6], [link["tx"], link["ty"], link["tz"]])

@@ -1,4 +1,5 @@
-"""Every test that docs/promises.md and SECURITY.md name exists, and every promise names one.
+"""Every test that docs/promises.md and SECURITY.md name exists, and every promise names one; every dependency that
+ARCHITECTURE.md names is on the page of licences.
 
 usage: promises_test.py SOURCE_ROOT
 """
@@ -34,9 +35,20 @@ def faults_of(page, known):
             yield f"{page}:{number}: a promise without a test"
 
 
+def without_licence():
+    table = (ROOT / "ARCHITECTURE.md").read_text().split("| package | does for us |")[1]
+    page = (ROOT / "docs/licences.md").read_text()
+    for cell in re.findall(r"^\| ([^|]+) \|", table, re.MULTILINE):
+        for name in re.sub(r"\(.*?\)", "", cell).replace(" from PyPI", "").replace("its ", "").split(","):
+            bare = re.sub(r" [\d.]+$", "", name.strip())
+            if bare not in page:
+                yield f"docs/licences.md: {bare}, a dependency in ARCHITECTURE.md, is missing"
+
+
 def main():
     known = {*cpp_tests(), *python_tests()}
     faults = [fault for page in ("docs/promises.md", "SECURITY.md") for fault in faults_of(page, known)]
+    faults += without_licence()
     print("\n".join(faults) or f"{len(known)} tests are there")
     return bool(faults)
 

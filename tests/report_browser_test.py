@@ -1,6 +1,7 @@
 """The report page in a real browser, headless Chromium. usage: report_browser_test.py IGSP [unittest arguments]"""
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -51,6 +52,11 @@ HTMLCanvasElement.prototype.getContext = function(kind, ...more) {
 };
 """
 
+SCRIPT_NAME = "<img src=x onerror=\"document.title='broken'\"><script>document.title='broken'<"  # no slash in a name
+INTRUDERS = """<script>window.broken = 'script'</script><img src=x onerror="window.broken = 'handler'">
+<style>body {display: none}</style><a id=link href="javascript:window.broken='link'">link</a>
+<base href="https://example.org/"><iframe srcdoc="<script>parent.broken = 'frame'</script>"></iframe>"""
+
 
 def setUpModule():
     folder = tempfile.TemporaryDirectory()
@@ -79,6 +85,12 @@ def make_pages(folder):
     run["runner_up"] = {"target_from_source": beside.tolist(), "share": 0.25}
     (folder / "runner_up.json").write_text(json.dumps(run))
     igsp("report", "runner_up.json", "-o", "runner_up.html")
+    # A file's name that is a script wherever it would be taken as a part of the page.
+    shutil.copy(folder / "station_1.ply", folder / SCRIPT_NAME)
+    igsp("align", SCRIPT_NAME, "station_0.ply", "--html", "script.html")
+    # As if something had got into the page in spite of all.
+    page = (folder / "park.html").read_text()
+    (folder / "changed.html").write_text(page.replace("</main>", INTRUDERS + "</main>", 1))
     np.savetxt(folder / "line.xyz", np.linspace([0, 0, 0], [10, 0, 0], 500))
     igsp("align", "line.xyz", "line.xyz", "--html", "line.html", codes=(1,))
     np.savetxt(folder / "far.xyz", np.random.default_rng(0).uniform(0, 10, (5000, 3)) + [500_000, 5_000_000, 0])
@@ -116,6 +128,26 @@ class PageTest(unittest.TestCase):
 
     def toggle(self, name):
         self.press(name, Keys.SPACE)
+
+
+class Hostile(PageTest):
+    def test_a_file_name_stays_a_name(self):
+        self.open("script.html")
+        self.assertIn(SCRIPT_NAME, self.browser.title)
+        self.assertIn("Registered", self.find("verdict-word").text)
+        self.assertEqual(self.script("return document.images.length"), 0)
+
+    def test_nothing_runs_but_the_page_itself(self):
+        """Its content security policy: neither scripts, handlers, styles, frames nor requests that came in later."""
+        self.browser.get(f"file://{self.folder / 'changed.html'}")
+        self.script("document.getElementById('link').click()")
+        self.assertIn("Registered", self.find("verdict-word").text)
+        self.assertIsNone(self.script("return window.broken || null"))
+        self.assertTrue(self.find("picture").is_displayed())
+        self.assertTrue(self.script("return document.baseURI").startswith("file:"))
+        refused = [entry["message"] for entry in self.browser.get_log("browser")]
+        for directive in ("script-src", "style-src", "base-uri"):
+            self.assertTrue([message for message in refused if directive in message], (directive, refused))
 
 
 class Registered(PageTest):
@@ -214,6 +246,19 @@ class Registered(PageTest):
         self.press("step", Keys.HOME)
         far = self.pixels()
         self.assertLess(near["grey"] / near["drawn"], 0.5 * far["grey"] / far["drawn"])
+
+    def test_contradicted_points_are_marked_where_viewpoints_are_known(self):
+        self.toggle("compare")
+        self.toggle("show-matches")
+        self.press("step", Keys.HOME)
+        plain = self.pixels()
+        self.toggle("show-contradicting")
+        marked = self.pixels()  # magenta is neither the red of the source nor the blue of the target
+        self.assertLess(marked["red"], 0.98 * plain["red"])
+        self.toggle("show-contradicting")
+        self.assertEqual(self.pixels()["sum"], plain["sum"])
+        self.open("line.html")
+        self.assertFalse(self.find("contradicting-group").is_displayed())
 
     def test_before_and_after_beside_each_other(self):
         self.toggle("compare")

@@ -19,6 +19,12 @@ def drawn_points(cloud: dict) -> np.ndarray:
     return steps / 65535 * np.array(cloud["extent"]) + np.array(cloud["min"]) + np.array(cloud["origin"])
 
 
+def contradicting(pose: dict, cloud: str) -> np.ndarray | None:
+    """(N,) of the drawn points: in space that the other scanner saw through; None where nothing is known."""
+    bytes_ = pose["contradicting"][cloud]
+    return None if bytes_ is None else np.frombuffer(base64.b64decode(bytes_), np.uint8).astype(bool)
+
+
 def distances(scene: dict, pose: dict) -> np.ndarray:
     """(N,) distances of the drawn source points to the target at a pose; infinite beyond the reach."""
     steps = np.frombuffer(base64.b64decode(pose["distances"]), np.uint8).astype(float)

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import cKDTree
 
-from report_page import distances, drawn_points, page_data
+from report_page import contradicting, distances, drawn_points, page_data
 
 IGSP = os.path.abspath(sys.argv.pop(1))
 MEGABYTE = 1_000_000
@@ -143,6 +143,20 @@ class Page(ReportTest):
             self.assertGreater(near.sum(), 1000)
             np.testing.assert_allclose(found[near], true[near], atol=0.51 * scene["reach"] / 254 + 1e-6)
             self.assertTrue(np.all(np.isinf(found[true > 1.01 * scene["reach"]])))
+
+    def test_points_in_space_that_the_other_scanner_saw_through(self):
+        run, data = self.aligned()  # the files say where the scanners stood
+        poses = {pose["kind"]: pose for pose in data["scene"]["poses"]}
+        for cloud in ["source", "target"]:
+            wrong, right = (contradicting(poses[kind], cloud) for kind in ["given", "final"])
+            self.assertEqual(len(right), data["scene"][cloud]["drawn"])
+            self.assertGreater(wrong.mean(), 3 * right.mean())
+            # the evidence counts voxels of those in view, the page all points
+            self.assertLess(right.mean(), 2 * run["evidence"]["free_space"][cloud]["share"] + 0.01)
+        _, data = self.aligned(None, None, "--source-viewpoint=none")
+        final = [pose for pose in data["scene"]["poses"] if pose["kind"] == "final"][0]
+        self.assertIsNone(contradicting(final, "target"))
+        self.assertIsNotNone(contradicting(final, "source"))
 
     def test_two_clouds_of_a_million_points_stay_below_15_megabytes(self):
         random = np.random.default_rng(5)

@@ -17,7 +17,7 @@ PAPER_VALUE = {"m": 8, "p1": 2.5, "p2": 1.5, "p3": 1.25, "s_ed": 30}  # the pape
 
 def mean_over_pairs(rows: list[Row], by: str, of: str) -> tuple[np.ndarray, np.ndarray]:
     """(V,) values of `by` and (V,) means of `of` over all rows that share them."""
-    values = np.array(sorted(set(row[by] for row in rows)))
+    values = np.array(sorted({row[by] for row in rows}))
     return values, np.array([np.mean([row[of] for row in rows if row[by] == value]) for value in values])
 
 

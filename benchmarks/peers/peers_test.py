@@ -176,7 +176,7 @@ class Runs(unittest.TestCase):
 
 
 def row(preset, name, truth="known", verdict="registered", success="yes", **others):
-    return {column: "" for column in COLUMNS} | {
+    return dict.fromkeys(COLUMNS, "") | {
         "preset": preset, "name": name, "group": "g" if truth == "known" else "negative", "truth": truth,
         "verdict": verdict, "success": success, "voxels": "igsp", "threads": "1", "version": "1", "scramble": "7",
         **others}
@@ -220,7 +220,7 @@ class Bookkeeping(unittest.TestCase):
 
     def test_rows_read_back(self):
         path = root / "rows.csv"
-        row = {column: "" for column in COLUMNS} | {"name": "a, \"b\"", "preset": "x+icp", "seed": "1"}
+        row = dict.fromkeys(COLUMNS, "") | {"name": "a, \"b\"", "preset": "x+icp", "seed": "1"}
         write_rows(path, [row])
         append_rows(path, [row, row])
         self.assertEqual(read_rows(path), [row] * 3)

@@ -49,6 +49,9 @@ class PointReader {
   FileFormat format() const;
   std::size_t dropped() const;          ///< non-finite points met so far
   std::size_t declared_points() const;  ///< the header's count; 0 where the format has none
+  /// Where the file says that the scanner stood: VIEWPOINT of a PCD unless it is the default, `comment viewpoint x y z`
+  /// of a PLY.
+  std::optional<Eigen::Vector3d> viewpoint() const;
 
  private:
   struct Implementation;
@@ -68,8 +71,10 @@ struct LoadedCloud {
 LoadedCloud read_points(const std::filesystem::path& path, const ReadOptions& options = {});
 
 struct WriteOptions {
-  std::optional<FileFormat> format;  ///< by default the one that the extension stands for
+  std::optional<FileFormat> format = {};  ///< by default the one that the extension stands for
   bool single_precision = false;     ///< coordinates rounded to float
+  /// Where the scanner stood; PLY and PCD keep it, text does not. PCD cannot tell the origin from not knowing.
+  std::optional<Eigen::Vector3d> viewpoint = {};
 };
 
 /// The format that a path's extension stands for: .ply and .pcd binary, .xyz, .txt, .csv, .asc, .pts and the like text. Throws

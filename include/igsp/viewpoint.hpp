@@ -11,7 +11,7 @@ namespace igsp {
 /// What a user says of where a scanner stood.
 struct ViewpointRequest {
   enum class Kind {
-    automatic,  ///< what the file says
+    automatic,  ///< what the file says, else its origin if the cloud looks like one scan from there
     none,       ///< unknown, or a cloud fused from several places
     given
   };
@@ -42,7 +42,8 @@ struct ViewpointFinding {
 };
 
 /// Settles where the scanner stood. A viewpoint from which most points are hidden contradicts the cloud and is not
-/// used, unless the request insists. `declared`: what the file says. Throws as hidden_points.
+/// used, unless the request insists. `declared`: what the file says; where it says nothing, the origin is believed if
+/// the cloud has one depth a direction from there and not from places about it. Throws as hidden_points.
 ViewpointFinding find_viewpoint(PointView points, const ViewpointRequest& request,
                                 const std::optional<Eigen::Vector3d>& declared = {});
 

@@ -19,6 +19,7 @@ from igsp._core import (
     Result,
     RunnerUp,
     SimulatedScan,
+    ViewpointFinding,
     simulate,
 )
 from igsp._core import version as __version__
@@ -35,6 +36,7 @@ from igsp.files import (
     write_transformation,
 )
 from igsp.registration import align, diagnose, extract_features, options
+from igsp.viewpoints import find_viewpoint
 
 __all__ = [
     "Cancelled",
@@ -51,10 +53,12 @@ __all__ = [
     "Result",
     "RunnerUp",
     "SimulatedScan",
+    "ViewpointFinding",
     "__version__",
     "align",
     "diagnose",
     "extract_features",
+    "find_viewpoint",
     "match_quality",
     "options",
     "pose_error",

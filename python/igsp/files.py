@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import warnings
+from dataclasses import dataclass
 
+import numpy as np
 import numpy.typing as npt
 
 from igsp import _core
@@ -20,28 +22,53 @@ def read_points(path: Path) -> Points:
     Points with a coordinate that is not finite are left out, with a warning. OSError names path and line or byte,
     ImportError the optional package that the format needs. More of a survey format's content: `igsp.formats`.
     """
+    return load_cloud(path, stacklevel=3).points
+
+
+@dataclass(frozen=True)
+class LoadedCloud:
+    """What a file or an object in memory holds for `align`."""
+
+    points: Points
+    viewpoint: Points | None  # (3,), as stated
+    scans: int = 1  # of which the points are: several have no viewpoint in common
+
+
+def load_cloud(path: Path, stacklevel: int = 5) -> LoadedCloud:
+    """As `read_points`, with the viewpoint that the file states."""
     from igsp import formats  # not before it is needed
 
     name = os.fspath(path)
+    scans = 1
     if formats.is_supported(name) and not name.lower().endswith(".pts"):
         cloud = formats.read_cloud(name)
-        points, dropped = cloud.points, cloud.dropped
+        points, dropped, viewpoint, scans = cloud.points, cloud.dropped, cloud.viewpoint, cloud.scan_count
+        if cloud.note:
+            warnings.warn(f"{name}: {cloud.note}", stacklevel=stacklevel)
     else:
-        points, dropped = _core.read_points(name)
+        points, dropped, viewpoint = _core.read_points(name)
     if dropped:
         warnings.warn(
             f"{name}: dropped {dropped} of {dropped + len(points)} points with a coordinate that is not finite",
-            stacklevel=2,
+            stacklevel=stacklevel,
         )
-    return points
+    return LoadedCloud(points, viewpoint, scans)
 
 
-def write_points(path: Path, points: object, *, single_precision: bool = False) -> None:
+def write_points(
+    path: Path, points: object, *, single_precision: bool = False, viewpoint: npt.ArrayLike | None = None
+) -> None:
     """Writes a cloud (see `align` for what may be one) to .ply, .pcd, .xyz, .txt, .csv or .pts; whole or not at all.
 
-    Reads back as exactly the same coordinates, or as those rounded to float with `single_precision`.
+    Reads back as exactly the same coordinates, or as those rounded to float with `single_precision`. `viewpoint`: (3,),
+    where the scanner stood, in the frame of the points; PLY and PCD keep it.
     """
-    _core.write_points(os.fspath(path), points_array(points, "points"), single_precision)
+    stated = None
+    if viewpoint is not None:
+        stated = np.require(np.asarray(viewpoint, np.float64), requirements=["C_CONTIGUOUS", "ALIGNED"])
+        if stated.shape != (3,):
+            raise ValueError(f"viewpoint has shape {stated.shape}; expected (3,)")
+    _core.write_points(os.fspath(path), points_array(points, "points"), single_precision, stated)
 
 
 def read_transformation(path: Path) -> Matrix:

@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from igsp import _core
 from igsp._core import Diagnosis, Features, Result
-from igsp.arrays import Points, matrix_array, points_array
-from igsp.files import read_points
+from igsp.arrays import Points, matrix_array
 from igsp.progress import ProgressBar, ProgressFunction
+from igsp.viewpoints import Viewpoint, load, settle
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -28,6 +28,8 @@ def align(
     target: object,
     *,
     initial: npt.ArrayLike | None = None,
+    source_viewpoint: Viewpoint = "auto",
+    target_viewpoint: Viewpoint = "auto",
     progress: Progress = False,
     **options: Unpack[OptionKeywords],
 ) -> Result:
@@ -36,6 +38,9 @@ def align(
     `source`, `target`: each a path, an (N, 3) array in one common unit of length, an Open3D, PyVista or laspy cloud, or
         the Features of one. A C-contiguous float64 array is not copied; do not change it while the call runs.
     `initial`: (4, 4) guess of target_from_source; it is checked and refined if it holds, there is no search.
+    `source_viewpoint`, `target_viewpoint`: where the scanner stood, (3,) in the frame of its points (a far point: it
+        looked along one direction); None: unknown, or a fused cloud; "auto": see `find_viewpoint`; "x,y,z!" is used even
+        where the cloud contradicts it. Features keep theirs.
     `progress`: True draws bars on standard error; a function is called with stage and share done, see ProgressFunction.
     `options`: as `igsp.options()` lists them, such as voxel_size [units of the cloud], dof=4, preset="paper", threads.
 
@@ -47,11 +52,12 @@ def align(
     guess = None if initial is None else matrix_array(initial, "initial")
     with _progress_function(progress) as report:
         if not isinstance(source, Features) and not isinstance(target, Features):
-            return _core.align_points(_load(source, "source"), _load(target, "target"), guess, keywords, report)
+            scans = _load_both(source, target, source_viewpoint, target_viewpoint)
+            return _core.align_points(*scans, guess, keywords, report)
         _share_voxel_size(source, target, keywords)
         return _core.align_features(
-            _features(source, "source", keywords, report),
-            _features(target, "target", keywords, report),
+            _features(source, "source", source_viewpoint, keywords, report),
+            _features(target, "target", target_viewpoint, keywords, report),
             guess,
             keywords,
             report,
@@ -59,27 +65,37 @@ def align(
 
 
 def diagnose(
-    source: object, target: object, refused: Result, *, search: bool = True, progress: Progress = False
+    source: object,
+    target: object,
+    refused: Result,
+    *,
+    search: bool = True,
+    source_viewpoint: Viewpoint = "auto",
+    target_viewpoint: Viewpoint = "auto",
+    progress: Progress = False,
 ) -> list[Diagnosis]:
     """Why `align` may have refused this pair: mirrored or flat clouds, degrees, coarse coordinates, too few points.
 
-    `source`, `target`: as given to `align`, but no Features. `refused`: its answer, whose options are used again.
+    `source`, `target`, their viewpoints: as given to `align`, but no Features. `refused`: its answer, whose options are used again.
     `search`: False leaves out what takes about as long as `align` itself, registering the mirrored source.
 
     Most likely first; empty if nothing was found, as for clouds that simply do not overlap, and for a registered pair.
     """
     with _progress_function(progress) as report:
-        return _core.diagnose(_load(source, "source"), _load(target, "target"), refused, search, report)
+        scans = _load_both(source, target, source_viewpoint, target_viewpoint)
+        return _core.diagnose(*scans, refused, search, report)
 
 
-def extract_features(cloud: object, *, progress: Progress = False, **options: Unpack[OptionKeywords]) -> Features:
+def extract_features(
+    cloud: object, *, viewpoint: Viewpoint = "auto", progress: Progress = False, **options: Unpack[OptionKeywords]
+) -> Features:
     """Everything that depends on one cloud alone, to align it several times. See `align` for the parameters.
 
     Clouds that shall meet must be extracted with the same options; `align` of a cloud and of Features takes the voxel
     size from the Features.
     """
     with _progress_function(progress) as report:
-        return _core.extract_features(_load(cloud, "cloud"), _plain(options), report)
+        return _extract(cloud, "cloud", viewpoint, "viewpoint", _plain(options), report)
 
 
 def options(**options: Unpack[OptionKeywords]) -> dict[str, bool | int | float | str]:
@@ -98,10 +114,16 @@ def _plain(options: OptionKeywords) -> dict[str, Any]:
     return {name: plain(value) for name, value in options.items()}
 
 
-def _load(cloud: object, name: str) -> Points:
-    if isinstance(cloud, (str, os.PathLike)):
-        return read_points(cloud)
-    return points_array(cloud, name)
+def _load_both(
+    source: object, target: object, source_viewpoint: Viewpoint, target_viewpoint: Viewpoint
+) -> tuple[Points, Points, Points | None, Points | None]:
+    moving, fixed = load(source, "source"), load(target, "target")
+    return (
+        moving.points,
+        fixed.points,
+        settle(moving, source_viewpoint, "source_viewpoint"),
+        settle(fixed, target_viewpoint, "target_viewpoint"),
+    )
 
 
 def _share_voxel_size(source: object, target: object, keywords: dict[str, Any]) -> None:
@@ -113,8 +135,27 @@ def _share_voxel_size(source: object, target: object, keywords: dict[str, Any]) 
     keywords["voxel_size"] = features.voxel_size
 
 
-def _features(cloud: object, name: str, keywords: dict[str, Any], report: ProgressFunction | None) -> Features:
-    return cloud if isinstance(cloud, Features) else _core.extract_features(_load(cloud, name), keywords, report)
+def _features(
+    cloud: object, name: str, viewpoint: Viewpoint, keywords: dict[str, Any], report: ProgressFunction | None
+) -> Features:
+    keyword = f"{name}_viewpoint"
+    if not isinstance(cloud, Features):
+        return _extract(cloud, name, viewpoint, keyword, keywords, report)
+    if not (isinstance(viewpoint, str) and viewpoint == "auto"):
+        raise ValueError(f"{keyword} is given, but {name} is Features, which keep theirs: say it to extract_features")
+    return cloud
+
+
+def _extract(
+    cloud: object,
+    name: str,
+    viewpoint: Viewpoint,
+    keyword: str,
+    keywords: dict[str, Any],
+    report: ProgressFunction | None,
+) -> Features:
+    loaded = load(cloud, name)
+    return _core.extract_features(loaded.points, settle(loaded, viewpoint, keyword), keywords, report)
 
 
 def _progress_function(progress: Progress) -> contextlib.AbstractContextManager[ProgressFunction | None]:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 
-from igsp.formats import is_supported, read_chunks, write_aligned
+from igsp.formats import is_supported, is_written, read_chunks, write_aligned
 
 __all__ = ["is_supported", "moves", "read_chunks", "write_aligned"]
 
 
 def moves(source: str, output: str) -> bool:
     """Whether `write_aligned` takes this source and this output: of one format, where LAS and LAZ count as one."""
-    return is_supported(source) and _kind(source) == _kind(output)
+    return is_written(source) and _kind(source) == _kind(output)
 
 
 def _kind(path: str) -> str:

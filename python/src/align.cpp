@@ -9,27 +9,27 @@
 namespace igsp::python {
 namespace {
 
-PointView input_of(const PointsIn& points) {
-  return view_of(points);
-}
-const Features& input_of(const Features& features) {
-  return features;
-}
-
 template <typename Input>
 Result run(const Input& source, const Input& target, const std::optional<MatrixIn>& initial, const Keywords& keywords,
            nb::handle progress) {
   const Options options = options_of(keywords);
   const ProgressCallback callback = progress_of(progress);
   nb::gil_scoped_release unlocked;
-  if (!initial) return align(input_of(source), input_of(target), options, callback);
-  return align(input_of(source), input_of(target), transformation_of(*initial), options, callback);
+  if (!initial) return align(source, target, options, callback);
+  return align(source, target, transformation_of(*initial), options, callback);
+}
+
+Result run_points(const PointsIn& source, const PointsIn& target, const std::optional<VectorIn>& source_viewpoint,
+                  const std::optional<VectorIn>& target_viewpoint, const std::optional<MatrixIn>& initial,
+                  const Keywords& keywords, nb::handle progress) {
+  return run(scan_of(source, source_viewpoint), scan_of(target, target_viewpoint), initial, keywords, progress);
 }
 
 }  // namespace
 
 void bind_align(nb::module_& module) {
-  module.def("align_points", &run<PointsIn>, nb::arg("source").noconvert(), nb::arg("target").noconvert(),
+  module.def("align_points", &run_points, nb::arg("source").noconvert(), nb::arg("target").noconvert(),
+             nb::arg("source_viewpoint").noconvert().none(), nb::arg("target_viewpoint").noconvert().none(),
              nb::arg("initial").noconvert().none(), nb::arg("options"), nb::arg("progress").none());
   module.def("align_features", &run<Features>, nb::arg("source"), nb::arg("target"),
              nb::arg("initial").noconvert().none(), nb::arg("options"), nb::arg("progress").none());

@@ -23,6 +23,16 @@ Transformation transformation_of(const MatrixIn& matrix) {
   return transformation;
 }
 
+Eigen::Vector3d vector_of(const VectorIn& vector) {
+  return {vector(0), vector(1), vector(2)};
+}
+
+Scan scan_of(const PointsIn& points, const std::optional<VectorIn>& viewpoint) {
+  Scan scan(view_of(points));
+  if (viewpoint) scan.viewpoint = vector_of(*viewpoint);
+  return scan;
+}
+
 ReadOnly<double, -1, 3> read_only_view(const Points& points) {
   return {reinterpret_cast<const double*>(points.data()), {points.size(), 3}};
 }
@@ -85,6 +95,14 @@ Array<double, -1, 3> array_of(Points&& points) {
   const std::size_t size = kept->size();
   nb::capsule owner(kept.release(), [](void* pointer) noexcept { delete static_cast<Points*>(pointer); });
   return {data, {size, 3}, owner};
+}
+
+std::optional<Array<double, 3>> array_of(const std::optional<Eigen::Vector3d>& vector) {
+  if (!vector) return std::nullopt;
+  auto kept = std::make_unique<Eigen::Vector3d>(*vector);
+  double* data = kept->data();
+  nb::capsule owner(kept.release(), [](void* pointer) noexcept { delete static_cast<Eigen::Vector3d*>(pointer); });
+  return Array<double, 3>{data, {3}, owner};
 }
 
 }  // namespace igsp::python

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <vector>
 
 #include "bindings.hpp"
@@ -21,6 +22,8 @@ using MatchesIn = nb::ndarray<const std::uint32_t, nb::numpy, nb::shape<-1, 2>, 
 PointView view_of(const PointsIn& points);
 std::span<const KeypointMatch> view_of(const MatchesIn& matches);
 Transformation transformation_of(const MatrixIn& matrix);
+Eigen::Vector3d vector_of(const VectorIn& vector);
+Scan scan_of(const PointsIn& points, const std::optional<VectorIn>& viewpoint);
 
 // What goes out. Features come in again, where a changed index would be trusted: read-only views of them, ...
 template <typename Scalar, nb::ssize_t... sizes>
@@ -45,5 +48,6 @@ Array<std::uint32_t, -1, 2> view(std::vector<KeypointMatch>& matches);
 Array<double, 4, 4> array_of(const Transformation& transformation);
 Array<double, 4, 4> array_of(const Eigen::Matrix4d& matrix);
 Array<double, -1, 3> array_of(Points&& points);
+std::optional<Array<double, 3>> array_of(const std::optional<Eigen::Vector3d>& vector);
 
 }  // namespace igsp::python

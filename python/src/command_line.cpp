@@ -57,6 +57,11 @@ PointView next_chunk(Chunks& chunks) {
   });
 }
 
+std::optional<Eigen::Vector3d> point_of(nb::handle array) {
+  if (array.is_none()) return std::nullopt;
+  return vector_of(nb::cast<VectorIn>(array));
+}
+
 void delete_in_python(Chunks* chunks) {
   nb::gil_scoped_acquire lock;
   delete chunks;
@@ -72,7 +77,11 @@ cli::ForeignCloud open(nb::handle formats, const fs::path& path) {
         .format = name,
         .next_chunk = [chunks] { return next_chunk(*chunks); },
         .dropped =
-            [chunks] { return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("dropped")); }); }};
+            [chunks] { return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("dropped")); }); },
+        .viewpoint = [chunks] { return in_python([&] { return point_of(chunks->iterator.attr("viewpoint")); }); },
+        .scans =
+            [chunks] { return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("scan_count")); }); },
+        .note = [chunks] { return in_python([&] { return nb::cast<std::string>(chunks->iterator.attr("note")); }); }};
   });
 }
 

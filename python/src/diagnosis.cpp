@@ -13,11 +13,14 @@
 namespace igsp::python {
 namespace {
 
-std::vector<Diagnosis> run(const PointsIn& source, const PointsIn& target, const Result& refused, bool search,
+std::vector<Diagnosis> run(const PointsIn& source, const PointsIn& target,
+                           const std::optional<VectorIn>& source_viewpoint,
+                           const std::optional<VectorIn>& target_viewpoint, const Result& refused, bool search,
                            nb::handle progress) {
   const ProgressCallback callback = progress_of(progress);
   nb::gil_scoped_release unlocked;
-  return diagnose(view_of(source), view_of(target), refused, {.search = search}, callback);
+  return diagnose(scan_of(source, source_viewpoint), scan_of(target, target_viewpoint), refused, {.search = search},
+                  callback);
 }
 
 std::optional<Array<double, 4, 4>> matrix_of(const Diagnosis& diagnosis) {
@@ -38,8 +41,9 @@ void bind_diagnosis(nb::module_& module) {
       .def("__str__", [](const Diagnosis& diagnosis) { return diagnosis.description; })
       .def("__repr__",
            [](const Diagnosis& diagnosis) { return fmt::format("<Diagnosis: {}>", to_string(diagnosis.cause)); });
-  module.def("diagnose", &run, nb::arg("source").noconvert(), nb::arg("target").noconvert(), nb::arg("refused"),
-             nb::arg("search"), nb::arg("progress").none());
+  module.def("diagnose", &run, nb::arg("source").noconvert(), nb::arg("target").noconvert(),
+             nb::arg("source_viewpoint").noconvert().none(), nb::arg("target_viewpoint").noconvert().none(),
+             nb::arg("refused"), nb::arg("search"), nb::arg("progress").none());
 }
 
 }  // namespace igsp::python

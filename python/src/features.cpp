@@ -1,6 +1,7 @@
 #include "igsp/features.hpp"
 
 #include <fmt/format.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -18,11 +19,12 @@ auto view(const Features& self) {
   return read_only_view(self.*member);
 }
 
-Features extract(const PointsIn& cloud, const Keywords& keywords, nb::handle progress) {
+Features extract(const PointsIn& cloud, const std::optional<VectorIn>& viewpoint, const Keywords& keywords,
+                 nb::handle progress) {
   const Options options = options_of(keywords);
   const ProgressCallback callback = progress_of(progress);
   nb::gil_scoped_release unlocked;
-  return extract_features(view_of(cloud), options, callback);
+  return extract_features(scan_of(cloud, viewpoint), options, callback);
 }
 
 }  // namespace
@@ -32,6 +34,9 @@ void bind_features(nb::module_& module) {
                            "What the method knows of one cloud. Coordinates are relative to `origin` (world = local + "
                            "origin). N voxels, K keypoints. Its arrays are read-only.")
       .def_prop_ro("origin", &view<&Features::origin>, "(3,) float64.")
+      .def_prop_ro(
+          "viewpoint", [](const Features& features) { return array_of(features.viewpoint); }, nb::rv_policy::automatic,
+          "(3,) float64: where the scanner stood, local; None: unknown.")
       .def_ro("voxel_size", &Features::voxel_size, "[units of the cloud].")
       .def_prop_ro("points", &view<&Features::points>, "(N, 3) float64: voxel centroids, local.")
       .def_prop_ro("curvature", &view<&Features::curvature>, "(N,) float32: surface variation, [0, 1/3].")
@@ -50,8 +55,8 @@ void bind_features(nb::module_& module) {
         return fmt::format("<Features: {} keypoints of {} voxels of {:.4g}>", features.keypoints.size(),
                            features.points.size(), features.voxel_size);
       });
-  module.def("extract_features", &extract, nb::arg("cloud").noconvert(), nb::arg("options"),
-             nb::arg("progress").none());
+  module.def("extract_features", &extract, nb::arg("cloud").noconvert(), nb::arg("viewpoint").noconvert().none(),
+             nb::arg("options"), nb::arg("progress").none());
 }
 
 }  // namespace igsp::python

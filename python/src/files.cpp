@@ -1,5 +1,6 @@
-#include <nanobind/stl/pair.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 
 #include "arrays.hpp"
 #include "igsp/errors.hpp"
@@ -21,6 +22,7 @@ LoadedCloud read_interruptibly(const std::string& path) {
     check_signals({"read", 0.0});
   }
   cloud.dropped = reader.dropped();
+  cloud.viewpoint = reader.viewpoint();
   return cloud;
 }
 
@@ -31,16 +33,22 @@ void bind_files(nb::module_& module) {
       "read_points",
       [](const std::string& path) {
         LoadedCloud cloud = read_interruptibly(path);
-        return std::pair(array_of(std::move(cloud.points)), cloud.dropped);
+        return std::tuple(array_of(std::move(cloud.points)), cloud.dropped, array_of(cloud.viewpoint));
       },
-      nb::arg("path"), "(N, 3) float64 and the number of points dropped for a coordinate that is not finite.");
+      nb::arg("path"),
+      "(N, 3) float64, the number of points dropped for a coordinate that is not finite, and the "
+      "viewpoint that the file states.");
   module.def(
       "write_points",
-      [](const std::string& path, const PointsIn& points, bool single_precision) {
+      [](const std::string& path, const PointsIn& points, bool single_precision,
+         const std::optional<VectorIn>& viewpoint) {
         nb::gil_scoped_release unlocked;
-        write_points(path, view_of(points), {.format = {}, .single_precision = single_precision});
+        WriteOptions options{.single_precision = single_precision};
+        if (viewpoint) options.viewpoint = vector_of(*viewpoint);
+        write_points(path, view_of(points), options);
       },
-      nb::arg("path"), nb::arg("points").noconvert(), nb::arg("single_precision"));
+      nb::arg("path"), nb::arg("points").noconvert(), nb::arg("single_precision"),
+      nb::arg("viewpoint").noconvert().none());
   module.def(
       "read_transformation", [](const std::string& path) { return array_of(read_transformation(path)); },
       nb::arg("path"));

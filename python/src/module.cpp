@@ -9,6 +9,7 @@ NB_MODULE(_core, module) {
   bind_options(module);
   bind_result(module);
   bind_features(module);
+  bind_viewpoint(module);
   bind_align(module);
   bind_diagnosis(module);
   bind_evaluation(module);

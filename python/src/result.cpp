@@ -69,7 +69,10 @@ void bind_evidence(nb::module_& module) {
   portable_class<CloudSummary>(module, "CloudSummary", "How much of a cloud went into the method.")
       .def_ro("points", &CloudSummary::points, "Points as given.")
       .def_ro("voxels", &CloudSummary::voxels, "Points after the voxel filter.")
-      .def_ro("keypoints", &CloudSummary::keypoints, "Keypoints among them.");
+      .def_ro("keypoints", &CloudSummary::keypoints, "Keypoints among them.")
+      .def_prop_ro(
+          "viewpoint", [](const CloudSummary& cloud) { return array_of(cloud.viewpoint); }, nb::rv_policy::automatic,
+          "(3,) float64: where the scanner stood, in the cloud's frame; None: unknown.");
   portable_class<Evidence>(module, "Evidence", "What the verdict is made of: two independent questions to the clouds.")
       .def_ro("mutual_matches", &Evidence::mutual_matches,
               "Mutual nearest neighbours among the descriptors in a common frame ...")

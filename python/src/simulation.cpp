@@ -28,6 +28,9 @@ void bind_simulation(nb::module_& module) {
       .def_prop_ro(
           "world_from_scanner", [](const SimulatedScan& scan) { return array_of(scan.world_from_scanner); },
           nb::rv_policy::automatic, "(4, 4) float64: where the scanner stood.")
+      .def_prop_ro(
+          "viewpoint", [](const SimulatedScan& scan) { return array_of(scan.viewpoint); }, nb::rv_policy::automatic,
+          "(3,) float64: where the sensor was in the frame of the points; None where they lie on no surface.")
       .def("__repr__",
            [](const SimulatedScan& scan) { return fmt::format("<SimulatedScan: {} points>", scan.points.size()); });
   const SimulationOptions defaults;

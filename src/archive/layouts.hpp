@@ -19,6 +19,8 @@ struct Field {
   std::string_view name;
   Member Class::*member;
 };
+template <typename Class, typename Member>
+Field(std::string_view, Member Class::*) -> Field<Class, Member>;  // Clang before 17 does not find it by itself
 
 template <typename Class>
 struct Layout {};
@@ -84,10 +86,8 @@ template <>
 struct Layout<CloudSummary> {
   static constexpr std::string_view name = "CloudSummary";
   static constexpr std::tuple fields = {
-      Field{"points", &CloudSummary::points},
-      Field{"voxels", &CloudSummary::voxels},
-      Field{"keypoints", &CloudSummary::keypoints},
-      Field{"stray", &CloudSummary::stray},
+      Field{"points", &CloudSummary::points},       Field{"voxels", &CloudSummary::voxels},
+      Field{"keypoints", &CloudSummary::keypoints}, Field{"stray", &CloudSummary::stray},
       Field{"viewpoint", &CloudSummary::viewpoint},
   };
 };
@@ -216,10 +216,9 @@ struct Layout<SimulatedScan> {
   };
 };
 
-using AllStructs =
-    std::tuple<StrayPoints, Features, KeypointMatch, IterationRecord, CloudSummary, FreeDirection, Precision,
-               FreeSpaceViolation, FreeSpace, Evidence, RunnerUp, Result, Diagnosis, PoseError, MatchQuality,
-               SimulatedScan>;
+using AllStructs = std::tuple<StrayPoints, Features, KeypointMatch, IterationRecord, CloudSummary, FreeDirection,
+                              Precision, FreeSpaceViolation, FreeSpace, Evidence, RunnerUp, Result, Diagnosis,
+                              PoseError, MatchQuality, SimulatedScan>;
 
 template <typename T>
 concept HasLayout = requires {

@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cctype>
 #include <vector>
 
 #include "config/nearest.hpp"
@@ -77,16 +78,60 @@ void assign_table(Options& options, const toml::table& table, const std::string&
 }
 
 // Every part of a dotted key is a table in the one before; the parser follows them down its stack without a limit.
-void check_depth(std::string_view text, std::string_view name) {
+bool is_deep(std::string_view line) {
   constexpr std::ptrdiff_t most_dots = 32;  // options have two parts; numbers and a comment at the end have dots too
+  return std::ranges::count(line, '.') > most_dots;
+}
+
+// "[.a]", "[=]": the parser takes for granted that a name begins there, and aborts or does anything where none does.
+bool is_nameless_section(std::string_view line) {
+  if (!line.starts_with('[')) return false;
+  line.remove_prefix(line.starts_with("[[") ? 2 : 1);
+  const std::size_t name = line.find_first_not_of(" \t");
+  if (name == std::string_view::npos) return true;
+  const auto letter = static_cast<unsigned char>(line[name]);
+  return !(std::isalnum(letter) || std::string_view("_-\"']").find(line[name]) != std::string_view::npos);
+}
+
+// Beyond ASCII outside of strings and comments: no name has that, and the parser's tables of letters have gaps into
+// which it falls.
+bool has_foreign_letter(std::string_view line) {
+  char quote = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (quote != 0) {
+      if (line[i] == quote) quote = 0;
+      if (line[i] == '\\' && quote == '"') ++i;
+    } else if (line[i] == '#') {
+      return false;
+    } else if (line[i] == '"' || line[i] == '\'') {
+      quote = line[i];
+    } else if (static_cast<unsigned char>(line[i]) > 127) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Strings of several lines, which no option takes: what is inside and what outside shows in no single line.
+bool opens_long_string(std::string_view line) {
+  return line.find("\"\"\"") != std::string_view::npos || line.find("'''") != std::string_view::npos;
+}
+
+// What the parser itself does not survive.
+void check_lines(std::string_view text, std::string_view name) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t length = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, length);
     text.remove_prefix(std::min(length + 1, text.size()));
     const std::size_t first = line.find_first_not_of(" \t");
-    if (first != std::string_view::npos && line[first] == '#') continue;
-    if (std::ranges::count(line, '.') <= most_dots) continue;
-    throw FileError(fmt::format("{}:{}: more than {} dots: an option is called section.name", name, number, most_dots));
+    if (first == std::string_view::npos || line[first] == '#') continue;
+    const auto fail = [&](std::string_view fault) { throw FileError(fmt::format("{}:{}: {}", name, number, fault)); };
+    if (is_deep(line)) fail("more than 32 dots: an option is called section.name");
+    if (opens_long_string(line)) fail("an option takes no string of several lines");
+    if (has_foreign_letter(line)) fail("letters outside of ASCII belong into comments and strings");
+    if (is_nameless_section(line.substr(first))) fail("a section in brackets needs a name: [section]");
   }
 }
 
@@ -122,7 +167,7 @@ std::string options_to_toml(const Options& options) {
 }
 
 Options options_from_toml(std::string_view text, std::string_view name) {
-  check_depth(text, name);
+  check_lines(text, name);
   toml::table table;
   try {
     table = toml::parse(text, name);

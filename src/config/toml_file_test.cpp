@@ -58,6 +58,24 @@ TEST(Toml, KeysOfManyPartsAreRefusedBeforeTheyFillTheStack) {
   EXPECT_NO_THROW(options_from_toml("# " + deep + "\nthreads = 1\n", "text"));
 }
 
+TEST(Toml, SectionsWithoutANameAreRefusedBeforeTheParserAborts) {
+  for (const std::string_view text :
+       {"[.a]", "a.b = 1\n  [ = ]", "[[.a]]", "[[ .a ]]", "[", "[#]\n", "[\r\n]", "\xEF\xBB\xBF[.a]"}) {
+    EXPECT_NE(message_of<FileError>(text).find("a section in brackets needs a name"), std::string::npos) << text;
+  }
+  EXPECT_EQ(options_from_toml("[ 'energy' ]\np1 = 2.0\n[\"keypoints\"]", "a.toml").energy.p1, 2.0);
+}
+
+TEST(Toml, LettersThatTheParserFallsOverAreRefused) {
+  for (const std::string_view text :
+       {"\xef\xba\xbf# a", "[\xc3\xa4]", "threads = 1\n\xef\xba\xbf = 2", "preset = \"a\\\"\xc3\xa4\" \xc3\xa4"}) {
+    EXPECT_NE(message_of<FileError>(text).find("outside of ASCII"), std::string::npos) << text;
+  }
+  EXPECT_NE(message_of<FileError>("preset = \"\"\"\npaper\"\"\"").find("several lines"), std::string::npos);
+  EXPECT_EQ(options_from_toml("threads = 2  # z\xc3\xa4hlt\n", "text").threads, 2);
+  EXPECT_NE(message_of<InvalidArgument>("preset = \"\xc3\xa4\"").find("preset"), std::string::npos);
+}
+
 TEST(Toml, AnyRealValuesReadBackExactly) {
   EXPECT_TRUE(rc::check([] {
     Options options;

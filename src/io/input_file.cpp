@@ -40,15 +40,23 @@ InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
       static_cast<std::size_t>(std::min<std::uint64_t>(buffer_size, size_ + 1)));  // never full of a small file
 }
 
+std::size_t InputFile::read_raw(char* to, std::size_t count) {
+  try {
+    return static_cast<std::size_t>(stream_.rdbuf()->sgetn(to, static_cast<std::streamsize>(count)));
+  } catch (const std::ios_base::failure& failure) {  // a disk or a network that fails half-way
+    fail_at_offset(buffer_offset_ + end_, "cannot read: " + failure.code().message());
+  }
+}
+
 bool InputFile::refill() {
   if (begin_ > 0) std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   buffer_offset_ += begin_;
   end_ -= begin_;
   begin_ = 0;
   if (encoding_ != Encoding::bytes) return refill_from_utf16();
-  const auto room = static_cast<std::streamsize>(buffer_.size() - end_);
-  const std::streamsize got = room > 0 ? stream_.rdbuf()->sgetn(buffer_.data() + end_, room) : 0;
-  if (got > 0) end_ += static_cast<std::size_t>(got);
+  const std::size_t room = buffer_.size() - end_;
+  const std::size_t got = room > 0 ? read_raw(buffer_.data() + end_, room) : 0;
+  end_ += got;
   return got > 0;
 }
 
@@ -56,7 +64,7 @@ bool InputFile::refill_from_utf16() {
   constexpr std::size_t most_units = 16384;
   std::array<char, 2 * most_units> raw;
   const std::size_t units = std::min(most_units, (buffer_.size() - end_) / utf8_bytes_per_unit);
-  const auto got = static_cast<std::size_t>(stream_.rdbuf()->sgetn(raw.data(), static_cast<long>(2 * units)));
+  const std::size_t got = read_raw(raw.data(), 2 * units);
   const bool little = encoding_ == Encoding::utf16_little_endian;
   const auto unit = [&](std::size_t i) {
     const auto first = static_cast<unsigned char>(raw[i]), second = static_cast<unsigned char>(raw[i + 1]);

@@ -56,6 +56,7 @@ class InputFile {
   enum class Encoding { bytes, utf16_little_endian, utf16_big_endian };
 
   /// Moves what is left to the front and fills up; false when the file has no more bytes.
+  std::size_t read_raw(char* to, std::size_t count);
   bool refill();
   /// Reads UTF-16 and appends it as UTF-8.
   bool refill_from_utf16();

@@ -24,18 +24,13 @@ std::vector<RecordField> fields_of(const InputFile& file, const PcdHeader& heade
 /// VIEWPOINT, the pose of the sensor, moved; the line itself where it says nothing else then.
 std::string moved_viewpoint(std::string_view line, const Transformation& transformation) {
   const auto words = split_words(line);
-  std::array<double, 7> pose{};  // position, then quaternion, w first
-  if (words.size() != pose.size() + 1) return std::string(line);
-  for (std::size_t i = 0; i < pose.size(); ++i) {
-    const auto value = parse_number<double>(words[i + 1]);
-    if (!value) return std::string(line);
-    pose[i] = *value;
-  }
+  const auto read = parse_pcd_pose(std::span<const std::string_view>(words).subspan(1));
+  if (!read) return std::string(line);
+  const PcdPose& pose = *read;
   const Eigen::Vector3d position = moved({pose[0], pose[1], pose[2]}, false, transformation);
   const Eigen::Quaterniond turned =
       Eigen::Quaterniond(transformation.linear()).normalized() * Eigen::Quaterniond(pose[3], pose[4], pose[5], pose[6]);
-  const std::array<double, 7> after{position.x(), position.y(), position.z(), turned.w(),
-                                    turned.x(),   turned.y(),   turned.z()};
+  const PcdPose after{position.x(), position.y(), position.z(), turned.w(), turned.x(), turned.y(), turned.z()};
   return after == pose ? std::string(line) : fmt::format("VIEWPOINT {}", fmt::join(after, " "));
 }
 

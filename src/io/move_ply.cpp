@@ -22,11 +22,15 @@ std::vector<RecordField> fields_of(const PlyElement& element) {
   return fields;
 }
 
-/// The header as it is, save that properties whose values are written as doubles say so.
+/// The header as it is, save the viewpoint, and that properties whose values are written as doubles say so.
 void write_header(MoveJob& job, const PlyHeader& header, const std::vector<RecordMotion>& motions) {
   std::size_t element = 0, property = 0;
   job.copy_lines_read([&](std::string_view line) {
     const auto words = split_words(line);
+    if (const auto viewpoint = ply_viewpoint(words)) {
+      const Eigen::Vector3d after = moved(*viewpoint, false, job.transformation);
+      return after == *viewpoint ? std::string(line) : ply_viewpoint_comment(after);
+    }
     if (!words.empty() && words[0] == "element") {
       ++element;
       property = 0;

@@ -4,10 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
-#include <ranges>
 #include <string_view>
+#include <vector>
 
 #include "io/header_lines.hpp"
 #include "io/number_text.hpp"
@@ -128,6 +129,15 @@ FileFormat parse_data(const InputFile& file, const Entries& entries) {
   file.fail_at_line(data.line, "expected 'DATA ascii', 'DATA binary' or 'DATA binary_compressed'");
 }
 
+std::optional<Eigen::Vector3d> find_viewpoint(const Entries& entries) {
+  const auto found = entries.find("VIEWPOINT");
+  if (found == entries.end()) return std::nullopt;
+  const std::vector<std::string_view> words(found->second.values.begin(), found->second.values.end());
+  const auto pose = parse_pcd_pose(words);
+  if (!pose || *pose == default_pcd_pose) return std::nullopt;
+  return Eigen::Vector3d((*pose)[0], (*pose)[1], (*pose)[2]);
+}
+
 /// 0.7, .7 and older; what calls itself 1.0 or more is made by other rules.
 void require_version(const InputFile& file, const Entries& entries) {
   const auto found = entries.find("VERSION");
@@ -146,8 +156,10 @@ void require_coordinates(const InputFile& file, const PcdHeader& header) {
     const auto is_wanted = [&](const PcdField& field) { return coordinate_named(field.name) == wanted; };
     const auto found = std::ranges::count_if(header.fields, is_wanted);
     if (found != 1) {
+      std::vector<std::string_view> names;
+      for (const PcdField& field : header.fields) names.push_back(field.name);
       file.fail_at_line(fmt::format("{} fields named '{}' in the header, expected one; it has {}", found, name,
-                                    fmt::join(header.fields | std::views::transform(&PcdField::name), ", ")));
+                                    fmt::join(names, ", ")));
     }
     const auto count = std::ranges::find_if(header.fields, is_wanted)->count;
     if (count != 1) file.fail_at_line(fmt::format("field '{}' has COUNT {}, expected 1", name, count));
@@ -156,6 +168,17 @@ void require_coordinates(const InputFile& file, const PcdHeader& header) {
 
 }  // namespace
 
+std::optional<PcdPose> parse_pcd_pose(std::span<const std::string_view> words) {
+  PcdPose pose{};
+  if (words.size() != pose.size()) return std::nullopt;
+  for (std::size_t i = 0; i < pose.size(); ++i) {
+    const auto value = parse_number<double>(words[i]);
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    pose[i] = *value;
+  }
+  return pose;
+}
+
 PcdHeader read_pcd_header(InputFile& file) {
   const Entries entries = read_entries(file);
   require_version(file, entries);
@@ -163,6 +186,7 @@ PcdHeader read_pcd_header(InputFile& file) {
   header.format = parse_data(file, entries);
   header.fields = parse_fields(file, entries);
   header.points = parse_points(file, entries);
+  header.viewpoint = find_viewpoint(entries);
   for (const PcdField& field : header.fields) scalar_type_of(file, field);
   require_coordinates(file, header);
   return header;

@@ -59,7 +59,7 @@ ColumnRecords column_records(InputFile& file, const PcdHeader& header) {
 
 PointBody open_pcd(InputFile& file) {
   const PcdHeader header = read_pcd_header(file);
-  PointBody body{header.format, header.points, {}};
+  PointBody body{header.format, header.points, header.viewpoint};
   if (header.format == FileFormat::pcd_ascii) {
     body.records = text_table(file, header);
   } else if (header.format == FileFormat::pcd_binary) {

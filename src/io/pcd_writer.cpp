@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <cstdint>
@@ -11,12 +12,13 @@ namespace igsp::io {
 
 namespace {
 
-std::string header(std::uint64_t points, bool single_precision, const char* data) {
+std::string header(const WriteJob& job, const char* data) {
+  const Eigen::Vector3d position = job.viewpoint.value_or(Eigen::Vector3d::Zero());
   return fmt::format(
       "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\nSIZE {0} {0} {0}\nTYPE F F F\nCOUNT 1 1 "
       "1\n"
-      "WIDTH {1}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {1}\nDATA {2}\n",
-      single_precision ? 4 : 8, points, data);
+      "WIDTH {1}\nHEIGHT 1\nVIEWPOINT {2} 1 0 0 0\nPOINTS {1}\nDATA {3}\n",
+      job.single_precision ? 4 : 8, job.count, fmt::join(position.begin(), position.end(), " "), data);
 }
 
 /// All x, then all y, then all z.
@@ -37,13 +39,13 @@ void write_compressed(AtomicFile& file, const ChunkSource& chunks, bool single_p
 void write_pcd(AtomicFile& file, const ChunkSource& chunks, const WriteJob& job) {
   const bool single = job.single_precision;
   if (job.format == FileFormat::pcd_ascii) {
-    file.write(header(job.count, single, "ascii"));
+    file.write(header(job, "ascii"));
     write_lines(file, chunks, single, ' ');
   } else if (job.format == FileFormat::pcd_binary) {
-    file.write(header(job.count, single, "binary"));
+    file.write(header(job, "binary"));
     write_records(file, chunks, single, std::endian::little);
   } else {
-    file.write(header(job.count, single, "binary_compressed"));
+    file.write(header(job, "binary_compressed"));
     write_compressed(file, chunks, single);
   }
 }

@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <ranges>
+#include <cmath>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "io/header_lines.hpp"
 #include "io/number_text.hpp"
@@ -66,13 +67,31 @@ PlyProperty parse_property(const InputFile& file, const Words& words) {
 
 }  // namespace
 
+std::optional<Eigen::Vector3d> ply_viewpoint(const std::vector<std::string_view>& words) {
+  if (words.size() != 5 || words[0] != "comment" || words[1] != "viewpoint") return std::nullopt;
+  Eigen::Vector3d viewpoint;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto number = parse_number<double>(words[i + 2]);
+    if (!number || !std::isfinite(*number)) return std::nullopt;
+    viewpoint[static_cast<Eigen::Index>(i)] = *number;
+  }
+  return viewpoint;
+}
+
+std::string ply_viewpoint_comment(const Eigen::Vector3d& viewpoint) {
+  return fmt::format("comment viewpoint {}", fmt::join(viewpoint.begin(), viewpoint.end(), " "));
+}
+
 PlyHeader read_ply_header(InputFile& file) {
   PlyHeader header;
   bool format_known = false;
   if (split_words(read_header_line(file)) != Words{"ply"}) file.fail_at_offset(0, "not a PLY file: no 'ply' line");
   while (true) {
     const Words words = split_words(read_header_line(file));
-    if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
+    if (words.empty() || words[0] == "comment" || words[0] == "obj_info") {
+      if (const auto viewpoint = ply_viewpoint(words)) header.viewpoint = viewpoint;
+      continue;
+    }
     if (words[0] == "end_header") break;
     if (words[0] == "format") {
       header.format = parse_format(file, words);
@@ -103,9 +122,10 @@ std::size_t find_vertex(const InputFile& file, const PlyHeader& header) {
     const auto found = std::ranges::count_if(
         vertex->properties, [&](const PlyProperty& p) { return !p.list_length && coordinate_named(p.name) == wanted; });
     if (found != 1) {
+      std::vector<std::string_view> names;
+      for (const PlyProperty& property : vertex->properties) names.push_back(property.name);
       file.fail_at_line(fmt::format("{} vertex properties named '{}' in the header, expected one; it has {}", found,
-                                    "xyz"[static_cast<std::size_t>(wanted)],
-                                    fmt::join(vertex->properties | std::views::transform(&PlyProperty::name), ", ")));
+                                    "xyz"[static_cast<std::size_t>(wanted)], fmt::join(names, ", ")));
     }
   }
   return static_cast<std::size_t>(vertex - header.elements.begin());

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "igsp/io.hpp"
@@ -26,7 +27,12 @@ struct PlyElement {
 struct PlyHeader {
   FileFormat format = FileFormat::ply_ascii;
   std::vector<PlyElement> elements;
+  std::optional<Eigen::Vector3d> viewpoint;  ///< of a comment, see ply_viewpoint
 };
+
+/// Where the scanner stood, of the words of a header line `comment viewpoint x y z`; none of any other.
+std::optional<Eigen::Vector3d> ply_viewpoint(const std::vector<std::string_view>& words);
+std::string ply_viewpoint_comment(const Eigen::Vector3d& viewpoint);
 
 /// Consumes everything up to and including end_header.
 PlyHeader read_ply_header(InputFile& file);

@@ -72,7 +72,7 @@ PointBody open_ply(InputFile& file) {
   for (std::size_t i = 0; i < index; ++i) skip_element(file, header.elements[i], header.format);
 
   const PlyElement& vertex = header.elements[index];
-  PointBody body{header.format, vertex.count, {}};
+  PointBody body{header.format, vertex.count, header.viewpoint};
   if (header.format == FileFormat::ply_ascii) {
     const TextTable table = text_table(vertex);
     table.require_records(file);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <variant>
 
 #include "igsp/io.hpp"
@@ -15,7 +16,8 @@ namespace igsp::io {
 struct PointBody {
   FileFormat format = FileFormat::text;
   std::uint64_t declared_points = 0;
-  std::variant<TextTable, FixedRecords, ListRecords, ColumnRecords> records;
+  std::optional<Eigen::Vector3d> viewpoint;  ///< what the header says of it
+  std::variant<TextTable, FixedRecords, ListRecords, ColumnRecords> records = {};
 };
 
 PointBody open_ply(InputFile& file);

@@ -96,10 +96,15 @@ std::size_t PointReader::declared_points() const {
   return implementation_->body.declared_points;
 }
 
+std::optional<Eigen::Vector3d> PointReader::viewpoint() const {
+  return implementation_->body.viewpoint;
+}
+
 LoadedCloud read_points(const std::filesystem::path& path, const ReadOptions& options) {
   PointReader reader(path, PointReader::default_chunk, options);
   LoadedCloud cloud;
   cloud.format = reader.format();
+  cloud.viewpoint = reader.viewpoint();
   cloud.points.reserve(reader.declared_points());
   for (PointView chunk = reader.next_chunk(); !chunk.empty(); chunk = reader.next_chunk()) {
     cloud.points.insert(cloud.points.end(), chunk.begin(), chunk.end());

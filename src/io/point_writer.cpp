@@ -92,7 +92,10 @@ void write_points(const std::filesystem::path& path, PointView points, const Wri
 void write_points(const std::filesystem::path& path, std::size_t count, const ChunkSource& chunks,
                   const WriteOptions& options) {
   const FileFormat format = options.format ? *options.format : format_of(path);
-  const io::WriteJob job{format, count, options.single_precision, io::extension_of(path)};
+  const io::WriteJob job{format, count, options.single_precision, io::extension_of(path), options.viewpoint};
+  if (options.viewpoint && !options.viewpoint->allFinite()) {
+    throw InvalidArgument("options.viewpoint is not finite; three finite coordinates are needed");
+  }
   std::size_t written = 0;
   const ChunkSource checked = [&] {
     const PointView chunk = chunks();

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "igsp/io.hpp"
@@ -15,6 +16,7 @@ struct WriteJob {
   std::uint64_t count = 0;  ///< points that come
   bool single_precision = false;
   std::string extension;
+  std::optional<Eigen::Vector3d> viewpoint = {};
 };
 
 void write_ply(AtomicFile& file, const ChunkSource& chunks, const WriteJob& job);

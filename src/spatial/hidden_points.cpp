@@ -1,3 +1,5 @@
+#include "spatial/hidden_points.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,35 +8,15 @@
 #include <vector>
 
 #include "igsp/errors.hpp"
-#include "igsp/viewpoint.hpp"
 #include "spatial/direction_image.hpp"
-#include "spatial/scale.hpp"
 
 namespace igsp {
 namespace {
 
 constexpr double tolerance = 1.0 / 50;  // of the cloud's size: what one surface at a grazing angle spans in a direction
-constexpr double stray = 0.002;         // share of the coordinates beyond the size, on each side
 
 // Beyond, lines of sight are parallel to a millionth, and squares might overflow.
 constexpr double farthest = 1e6;  // sizes
-
-/// Without the few points that lie far outside.
-Bounds main_bounds(PointView points) {
-  Bounds bounds;
-  std::vector<double> values(points.size());
-  const auto rank = static_cast<std::size_t>(stray * static_cast<double>(points.size()));
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    std::ranges::transform(points, values.begin(), [axis](const Eigen::Vector3d& point) { return point[axis]; });
-    const auto low = values.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::ranges::nth_element(values, low);
-    bounds.min[axis] = *low;
-    const auto high = values.end() - static_cast<std::ptrdiff_t>(rank) - 1;
-    std::ranges::nth_element(values, high);
-    bounds.max[axis] = *high;
-  }
-  return bounds;
-}
 
 Eigen::Vector3d not_too_far(const Eigen::Vector3d& viewpoint, const Eigen::Vector3d& centre, double size) {
   const Eigen::Vector3d offset = viewpoint - centre;
@@ -44,16 +26,20 @@ Eigen::Vector3d not_too_far(const Eigen::Vector3d& viewpoint, const Eigen::Vecto
 
 }  // namespace
 
-HiddenPoints hidden_points(PointView points, const Eigen::Vector3d& position, int to_a_right_angle) {
-  bounds_of(points, "cloud");
-  if (!position.allFinite()) throw InvalidArgument("viewpoint is not finite; three finite coordinates are needed");
+HiddenPoints hidden_points(PointView points, const Eigen::Vector3d& viewpoint, int to_a_right_angle) {
+  const TrimmedCloud cloud(points, "cloud");
+  if (!viewpoint.allFinite()) throw InvalidArgument("viewpoint is not finite; three finite coordinates are needed");
   if (to_a_right_angle < 1 || to_a_right_angle > 1000) {
     throw InvalidArgument(fmt::format("to_a_right_angle = {} is not in [1, 1000]", to_a_right_angle));
   }
-  const Bounds bounds = main_bounds(points);
-  const double size = bounds.diagonal();
+  return hidden_points(cloud, viewpoint, to_a_right_angle);
+}
+
+HiddenPoints hidden_points(const TrimmedCloud& cloud, const Eigen::Vector3d& position, int to_a_right_angle) {
+  const PointView points = cloud.points();
+  const double size = cloud.bounds().diagonal();
   if (size == 0) return {};
-  const Eigen::Vector3d centre = centre_of(bounds), viewpoint = not_too_far(position, centre, size);
+  const Eigen::Vector3d centre = centre_of(cloud.bounds()), viewpoint = not_too_far(position, centre, size);
   const DirectionImage image(viewpoint, centre, 0.5 * size, to_a_right_angle);
   std::vector<double> nearest(image.cells(), std::numeric_limits<double>::infinity());
   std::vector<std::uint32_t> seen(image.cells(), 0);

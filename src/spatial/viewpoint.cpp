@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "spatial/hidden_points.hpp"
+
 namespace igsp {
 namespace {
 
@@ -43,7 +45,7 @@ ViewpointFinding find_viewpoint(PointView points, const ViewpointRequest& reques
       break;
   }
   if (declared) return declared_by_file(points, *declared);
-  return {{}, "unknown: nobody says it", ""};
+  return viewpoint_at_origin(points);
 }
 
 }  // namespace igsp

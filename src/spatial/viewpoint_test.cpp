@@ -101,6 +101,69 @@ TEST(FindViewpoint, WhatTheFileSays) {
   EXPECT_FALSE(find_viewpoint(room, {}).viewpoint);
 }
 
+TEST(HiddenPoints, AStrayPointDoesNotSpoilIt) {
+  const Points room = room_seen_from(eye, 20000);
+  for (const double away : {50.0, 1e4, -1e7}) {
+    Points with_stray = room;
+    with_stray.push_back(Vector3d(away, 1, 2));
+    for (const Vector3d& at : {eye, Vector3d(2, 1, 0), Vector3d(-4.5, 0.3, 0)}) {
+      EXPECT_EQ(hidden_points(with_stray, at).share, hidden_points(room, at).share) << away;
+    }
+  }
+}
+
+const Vector3d corner(-3.5, -2.5, -1);  // of the room: near some walls and far from others
+
+/// As a scanner at the origin of its own frame has it.
+Points room_about_the_scanner(std::size_t count) {
+  Points room = room_seen_from(corner, count);
+  for (Vector3d& point : room) point -= corner;
+  return room;
+}
+
+TEST(ViewpointAtOrigin, BelievedWhereTheCloudLooksLikeOneScanFromThere) {
+  const ViewpointFinding found = find_viewpoint(room_about_the_scanner(60000), {});
+  EXPECT_EQ(found.viewpoint, Vector3d::Zero()) << found.reason;
+  EXPECT_NE(found.reason.find("though the file does not say it: from its origin "), std::string::npos) << found.reason;
+  EXPECT_EQ(found.warning, "");
+}
+
+TEST(ViewpointAtOrigin, NeitherOrderNorStrayPointsNorCellsWithoutReturnMatter) {
+  Points room = room_about_the_scanner(60000);
+  const std::string reason = find_viewpoint(room, {}).reason;
+  std::ranges::reverse(room);
+  room.insert(room.begin(), Vector3d(3000, -9999, 1));
+  EXPECT_EQ(find_viewpoint(room, {}).reason, reason);
+  room.insert(room.begin(), 20000, Vector3d::Zero());
+  EXPECT_EQ(find_viewpoint(room, {}).viewpoint, Vector3d::Zero());
+}
+
+TEST(ViewpointAtOrigin, UnknownInDoubt) {
+  const auto reason_of = [](const Points& points) {
+    const ViewpointFinding found = find_viewpoint(points, {});
+    EXPECT_FALSE(found.viewpoint) << found.reason;
+    return found.reason;
+  };
+  const auto expect_reason = [&](const Points& points, std::string_view why) {
+    const std::string reason = reason_of(points);
+    EXPECT_NE(reason.find(why), std::string::npos) << reason;
+  };
+  Points survey = room_about_the_scanner(60000);
+  for (Vector3d& point : survey) point += Vector3d(500000, 5000000, 300);
+  expect_reason(survey, "its origin lies outside of the cloud");
+  expect_reason(room_seen_from(eye, 60000), "");  // a metre beside the scanner
+  Points fused = room_about_the_scanner(60000);
+  const Vector3d other(2.8, -1.5, 0.1);
+  for (const Vector3d& point : room_seen_from(other, 60000, 2)) fused.push_back(point - corner);
+  expect_reason(fused, "hidden");
+  Random random(3);
+  Points ball;
+  for (int i = 0; i < 20000; ++i) ball.push_back(random.direction());
+  expect_reason(ball, "about equally far");
+  expect_reason(room_about_the_scanner(500), "too few");
+  expect_reason(Points(100, Vector3d::Zero()), "nothing beside its origin");
+}
+
 TEST(ParseViewpoint, EveryForm) {
   using Kind = ViewpointRequest::Kind;
   EXPECT_EQ(parse_viewpoint("--v", "auto").kind, Kind::automatic);

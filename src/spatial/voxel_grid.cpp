@@ -13,10 +13,19 @@ namespace {
 
 constexpr int bits_per_axis = 21;
 constexpr double max_cell = 1 << (bits_per_axis - 1);
+// As fine as the coordinates themselves are in a cloud 2000 voxels across.
+constexpr double steps_per_voxel = 0x1p42;
+constexpr int carry_bits = 10;
 
 std::uint64_t key_of(const Eigen::Vector3d& cell) {
   const auto biased = [](double c) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(c + max_cell)); };
   return biased(cell.z()) << (2 * bits_per_axis) | biased(cell.y()) << bits_per_axis | biased(cell.x());
+}
+
+Eigen::Vector3d cell_of(std::uint64_t key) {
+  constexpr std::uint64_t mask = (std::uint64_t{1} << bits_per_axis) - 1;
+  const auto axis = [&](int i) { return static_cast<double>(key >> (i * bits_per_axis) & mask) - max_cell; };
+  return {axis(0), axis(1), axis(2)};
 }
 
 std::uint64_t scatter(std::uint64_t key) {
@@ -51,7 +60,8 @@ void VoxelFilter::add(PointView chunk) {
   const double inverse = 1.0 / voxel_size_;
   for (const Eigen::Vector3d& point : chunk) {
     const Eigen::Vector3d local = point - origin_;
-    const Eigen::Vector3d cell = (local * inverse).array().floor();
+    const Eigen::Vector3d place = local * inverse;
+    const Eigen::Vector3d cell = place.array().floor();
     if (!(cell.array().abs().maxCoeff() < max_cell)) {
       throw InvalidArgument(
           fmt::format("voxel_size is {}: too small for a cloud of this extent (a point lies {} away from the origin of "
@@ -61,15 +71,32 @@ void VoxelFilter::add(PointView chunk) {
     const std::uint64_t key = key_of(cell);
     const std::size_t slot = slot_of(key);
     if (table_[slot] != 0) {
-      Voxel& voxel = voxels_[table_[slot] - 1];
-      voxel.sum += local;
-      ++voxel.count;
+      add(place - cell, voxels_[table_[slot] - 1]);
     } else {
-      voxels_.push_back({key, 1, local});
+      voxels_.push_back({key, {}, 0, 0});
+      add(place - cell, voxels_.back());
       table_[slot] = static_cast<std::uint32_t>(voxels_.size());
       if (2 * voxels_.size() > table_.size()) grow();
     }
   }
+}
+
+void VoxelFilter::add(const Eigen::Vector3d& from_corner, Voxel& voxel) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto steps = static_cast<std::uint64_t>(from_corner[axis] * steps_per_voxel + 0.5);
+    voxel.sum[axis] += steps;
+    if (voxel.sum[axis] < steps) voxel.carries += 1u << (carry_bits * axis);
+  }
+  ++voxel.count;
+}
+
+Eigen::Vector3d VoxelFilter::centroid(const Voxel& voxel) const {
+  Eigen::Vector3d from_corner;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::uint32_t carry = voxel.carries >> (carry_bits * axis) & ((1u << carry_bits) - 1);
+    from_corner[axis] = (carry * 0x1p64 + static_cast<double>(voxel.sum[axis])) / (steps_per_voxel * voxel.count);
+  }
+  return (cell_of(voxel.key) + from_corner) * voxel_size_;
 }
 
 Points VoxelFilter::centroids() const {
@@ -77,10 +104,7 @@ Points VoxelFilter::centroids() const {
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = {voxels_[i].key, static_cast<std::uint32_t>(i)};
   std::sort(order.begin(), order.end());
   Points centroids(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const Voxel& voxel = voxels_[order[i].second];
-    centroids[i] = voxel.sum / voxel.count;
-  }
+  for (std::size_t i = 0; i < order.size(); ++i) centroids[i] = centroid(voxels_[order[i].second]);
   return centroids;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -18,16 +19,19 @@ class VoxelFilter {
 
   std::size_t size() const { return voxels_.size(); }
 
-  /// Centroids relative to the origin, sorted by voxel (z, y, x), hence independent of the order of the points up to
-  /// rounding.
+  /// Centroids relative to the origin, sorted by voxel (z, y, x). Bit for bit independent of the order of the points:
+  /// within a voxel they are summed up as integers, whose sum has no rounding.
   Points centroids() const;
 
  private:
   struct Voxel {
     std::uint64_t key;
+    std::array<std::uint64_t, 3> sum;  // from the voxel's corner, in steps of 2^-42 voxels; its lower 64 bits
     std::uint32_t count;
-    Eigen::Vector3d sum;
+    std::uint32_t carries;  // what the sums hold beyond that, 10 bits an axis: enough for 2^32 points
   };
+  static void add(const Eigen::Vector3d& from_corner, Voxel& voxel);
+  Eigen::Vector3d centroid(const Voxel& voxel) const;
   std::size_t slot_of(std::uint64_t key) const;
   void grow();
 

@@ -78,7 +78,19 @@ RC_GTEST_PROP(VoxelFilter, DoesNotSeeTheOrderOfThePoints, (std::uint64_t seed)) 
   Case c = random_case(random);
   const Points ordered = voxel_centroids(c.points, c.origin, c.voxel_size);
   for (std::size_t i = c.points.size(); i > 1; --i) std::swap(c.points[i - 1], c.points[random.bits() % i]);
-  RC_ASSERT(near(voxel_centroids(c.points, c.origin, c.voxel_size), ordered, 1e-12));
+  RC_ASSERT(voxel_centroids(c.points, c.origin, c.voxel_size) == ordered);
+}
+
+TEST(VoxelFilter, MorePointsThan64BitsSumUp) {
+  const std::size_t count = (std::size_t{1} << 22) + 5;  // 2^42 steps each, at the far corner
+  const Points points(1 << 16, Eigen::Vector3d(0.75, 0.25, 0.9999));
+  VoxelFilter filter(Eigen::Vector3d::Zero(), 1.0);
+  for (std::size_t left = count; left > 0;) {
+    const std::size_t now = std::min(left, points.size());
+    filter.add(PointView(points).first(now));
+    left -= now;
+  }
+  EXPECT_LT((filter.centroids().at(0) - points[0]).norm(), 1e-12);
 }
 
 TEST(VoxelFilter, HundredThousandVoxels) {

@@ -40,7 +40,7 @@ def random_points(count: int, seed: int = 1, extent: float = 50.0) -> Array:
 
 
 def make_las(points: Array, point_format: int = 3, version: str | None = None, scale: float = 0.001) -> laspy.LasData:
-    """Every dimension of the point format holds something, and so do two extra ones."""
+    """Every dimension of the point format holds something, and so do two extra ones; no point is noise or withheld."""
     header = laspy.LasHeader(point_format=point_format, version=version)
     header.scales = np.full(3, scale)
     header.offsets = np.round(points.mean(axis=0)) if len(points) else np.zeros(3)
@@ -57,6 +57,8 @@ def make_las(points: Array, point_format: int = 3, version: str | None = None, s
         else:
             shape = (len(points), 2) if name == "rings" else len(points)
             las[name] = random.integers(0, min(2**information.num_bits, 2**16), shape)
+    las["classification"] = random.integers(0, 7, len(points))
+    las["withheld"] = np.zeros(len(points), np.uint8)
     las["return_number"] = random.integers(1, 6, len(points))
     return las
 

@@ -45,7 +45,7 @@ def main():
     )
     (wheel,) = wheels.glob("igsp-*.whl")
     pip = environment(work / "environment")
-    run(pip, "install", "--quiet", f"{wheel}[las,e57,test]")
+    run(pip, "install", "--quiet", f"{wheel}[las,e57,mesh,test]")
     run(pip, "install", "--quiet", "--force-reinstall", "--no-deps", wheel)
 
 

@@ -175,7 +175,7 @@ def add_pictures(image: Any, file: pye57.E57) -> None:
 
 def picture_positions(path: Path) -> list[np.ndarray]:
     elements = _e57_file.image_elements(_e57_file.read_layout(path).document)
-    return [_e57_file.pose_of(element)[:3, 3] for element in elements]
+    return [_e57_file.pose_of_image(path, element, index)[:3, 3] for index, element in enumerate(elements)]
 
 
 def test_pictures_move_with_their_scan(tmp_path: Path) -> None:
@@ -231,6 +231,36 @@ def test_pose_that_is_no_motion(two_scans: Path) -> None:
     rebuild(two_scans, b'<w type="Float">', b'<w type="Float">7')
     with pytest.raises(formats.FormatError, match=r"source\.e57: scan 0: its pose is not a rigid motion"):
         formats.read_cloud(two_scans)
+
+
+def test_pose_of_a_picture_that_is_no_motion(tmp_path: Path) -> None:
+    points = random_points(10)
+    fields = {f"cartesian{axis}": points[:, i].copy() for i, axis in enumerate("XYZ")}
+    make_double_e57(tmp_path / "source.e57", fields, add_pictures)
+    document = _e57_file.read_layout(tmp_path / "source.e57").document
+    pictures = document.toxml().split("images2D")[1]
+    number = pictures.split('<w type="Float">')[1].split("</w>")[0]
+    for wrong in ("seven", "7"):
+        source = tmp_path / f"{wrong}.e57"
+        source.write_bytes((tmp_path / "source.e57").read_bytes())
+        rebuild(source, f'<w type="Float">{number}</w>'.encode(), f'<w type="Float">{wrong}</w>'.encode())
+        with pytest.raises(formats.FormatError, match="image 0: "):
+            formats.write_aligned(source, tmp_path / "aligned.e57", motion())
+
+
+def test_fewer_than_no_points(two_scans: Path) -> None:
+    rebuild(two_scans, b'recordCount="3000"', b'recordCount="-300"')
+    with pytest.raises(formats.FormatError, match=r"source\.e57: scan 0: it claims -300 points"):
+        formats.read_cloud(two_scans)
+
+
+def test_entities_that_grow_are_refused(two_scans: Path) -> None:
+    """A few hundred bytes that would be gigabytes: the parser's limit is an error of the file."""
+    levels = "".join(f'<!ENTITY e{i} "{f"&e{i - 1};" * 10}">' for i in range(1, 11))
+    rebuild(two_scans, b"?>", f'?><!DOCTYPE e57Root [<!ENTITY e0 "{"x" * 100}">{levels}]>'.encode())
+    rebuild(two_scans, b'<coordinateMetadata type="String"/>', b"<coordinateMetadata>&e10;</coordinateMetadata>")
+    with pytest.raises(formats.FormatError, match=r"source\.e57: byte \d+: XML section: "):
+        formats.read_metadata(two_scans)
 
 
 @pytest.mark.parametrize(("old", "new"), [(b"UTF-8", b"UTF-9"), (b"</pose>", b"</nose>")])

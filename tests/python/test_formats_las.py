@@ -259,3 +259,31 @@ def test_copc_cannot_be_written(tmp_path: Path) -> None:
     with pytest.raises(formats.FormatError, match=r"aligned\.copc\.laz: COPC cannot be written: name it \.laz"):
         formats.write_aligned(tmp_path / "source.copc.laz", tmp_path / "aligned.copc.laz", motion())
     assert not (tmp_path / "aligned.copc.laz").exists()
+
+
+@pytest.mark.parametrize("extension", ["las", "laz"])
+@pytest.mark.parametrize("point_format", [1, 6])
+def test_noise_and_withheld_points_are_left_out_unless_asked_for(
+    tmp_path: Path, point_format: int, extension: str
+) -> None:
+    points = random_points(100)
+    source, aligned = tmp_path / f"source.{extension}", tmp_path / f"aligned.{extension}"
+    las = make_las(points, point_format)
+    classes = np.array(las["classification"])
+    classes[:10], classes[10:15] = 7, 18
+    las["classification"] = classes
+    withheld = np.zeros(100, np.uint8)
+    withheld[12:20] = 1
+    las["withheld"] = withheld
+    las["synthetic"] = np.ones(100, np.uint8)  # another flag, which says nothing of the kind
+    las.write(source)
+    cloud = formats.read_cloud(source)
+    np.testing.assert_allclose(cloud.points, points[20:], rtol=0, atol=0.5001e-3)
+    assert cloud.metadata.noise == 20
+    assert cloud.note.startswith("left out 20 points that are classified as noise (7, 18) or withheld; ")
+    assert sum(map(len, formats.read_chunks(source, 7))) == 80
+    kept = formats.read_cloud(source, keep_noise=True)
+    assert len(kept.points) == 100 and kept.metadata.noise == 0 and kept.note == ""
+    formats.write_aligned(source, aligned, motion())  # which keeps all that the source holds
+    assert_same_attributes(laspy.read(aligned), laspy.read(source))
+    assert formats.read_cloud(aligned).metadata.noise == 20

@@ -81,3 +81,55 @@ def test_file_that_shrinks_while_it_is_read(tmp_path: Path) -> None:
     source.write_bytes(content[: start + 20_000 * record_length])
     with pytest.raises(formats.FormatError, match=r"source\.las: the file ends after 20000 of 50000 points"):
         list(reader)
+
+
+@pytest.mark.parametrize(("offset", "value"), [(0, 1), (0, 9), (34, 77), (38, 99)])  # compressor, an item, its version
+def test_variants_of_laz_that_the_codec_lacks_are_not_called_damaged(tmp_path: Path, offset: int, value: int) -> None:
+    source = tmp_path / "source.laz"
+    make_las(random_points(50), 1).write(source)
+    content = bytearray(source.read_bytes())
+    record = content.index(b"laszip encoded") - 2 + 54
+    struct.pack_into("<H", content, record + offset, value)
+    source.write_bytes(content)
+    with pytest.raises(formats.FormatError, match="(not supported|is unknown).*: write (it|the file) anew"):
+        formats.read_cloud(source)
+
+
+def laz_content(folder: Path) -> tuple[bytearray, int, int]:
+    """A LAZ file, where its points begin, and where the record of its compression stands."""
+    make_las(random_points(50), 6).write(folder / "whole.laz")
+    content = bytearray((folder / "whole.laz").read_bytes())
+    return content, struct.unpack_from("<I", content, 96)[0], content.index(b"laszip encoded") - 2
+
+
+def refused(folder: Path, content: bytes, fault: str) -> None:
+    (folder / "source.laz").write_bytes(content)
+    with pytest.raises(formats.FormatError, match=f"source.laz: {fault}"):
+        formats.read_cloud(folder / "source.laz")
+    with pytest.raises(formats.FormatError, match=f"source.laz: {fault}"):
+        formats.write_aligned(folder / "source.laz", folder / "aligned.laz", motion())
+
+
+def test_chunks_that_the_file_cannot_hold(tmp_path: Path) -> None:
+    """lazrs takes memory for as many as the table claims, and aborts the process where there is none."""
+    content, start, _ = laz_content(tmp_path)
+    table = struct.unpack_from("<q", content, start)[0]
+    struct.pack_into("<I", content, table + 4, 2**32 - 1)
+    refused(tmp_path, content, f"byte {table}: 4294967295 chunks do not fit into the \\d+ bytes before it")
+    for place in (-2, 0, start, 2**62):
+        struct.pack_into("<q", content, start, place)
+        refused(tmp_path, content, f"byte {start}: the table of its chunks would be at byte {place}")
+
+
+def test_compression_that_does_not_fit_its_points(tmp_path: Path) -> None:
+    content, _, record = laz_content(tmp_path)
+    begin = record + 54
+    changed = bytearray(content)
+    struct.pack_into("<H", changed, begin + 32, 999)
+    refused(tmp_path, changed, f"byte {begin}: 999 items do not fit into the record")
+    changed = bytearray(content)
+    struct.pack_into("<H", changed, begin + 34 + 2, 3)
+    refused(tmp_path, changed, f"byte {begin}: the items of the compression have \\d+ bytes, a point has \\d+")
+    changed = bytearray(content)
+    changed[record + 2] = ord("m")
+    refused(tmp_path, changed, "its points are compressed, but no record says how")

@@ -91,6 +91,7 @@ std::string contradicted(const CloudInput& cloud, std::string_view option, const
 std::vector<std::string> warnings_about(const CloudInput& source, const CloudInput& target) {
   std::vector<std::string> warnings;
   for (const CloudInput* cloud : {&source, &target}) {
+    if (!cloud->note.empty()) warnings.push_back(fmt::format("{}: {}", cloud->path.string(), cloud->note));
     if (cloud->dropped == 0) continue;
     warnings.push_back(fmt::format("{}: dropped {} of {} points with a coordinate that is not finite",
                                    cloud->path.string(), cloud->dropped, cloud->dropped + cloud->total));
@@ -222,8 +223,8 @@ void add_viewpoint_flag(CLI::App& align, const std::string& cloud, std::string& 
       .add_option("--" + cloud + "-viewpoint", text,
                   wrapped("where the scanner of the " + cloud +
                           " stood, in the file's frame; a far point stands for one that looked along one direction. "
-                          "none: unknown, or a fused cloud; auto: what the file says; x,y,z! is used even where the "
-                          "cloud contradicts it; default auto"))
+                          "none: unknown, or a fused cloud; auto: what the file says, else its origin if the cloud shows "
+                          "it; x,y,z! is used even where the cloud contradicts it; default auto"))
       ->type_name("X,Y,Z|none|auto");
 }
 

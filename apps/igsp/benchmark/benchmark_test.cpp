@@ -74,6 +74,22 @@ TEST_F(BenchmarkFiles, GroupMayBeLeftOutAndColumnsMayStandInAnyOrder) {
   EXPECT_EQ(cases[0].max_displacement, 0.3);
 }
 
+TEST_F(BenchmarkFiles, ViewpointsInTheFilesFrames) {
+  using Kind = ViewpointRequest::Kind;
+  const std::string columns =
+      "name,source,target,truth,max_rotation_error_deg,max_translation_error_m,source_viewpoint,target_viewpoint\n";
+  const auto cases =
+      read_cases(file(columns + "a,x.ply,y.ply,none,0,0,0 -1.5 2e3,\"0,0,10\"\nb,x.ply,y.ply,none,0,0,,auto\n"));
+  EXPECT_EQ(cases[0].source_viewpoint.kind, Kind::given);
+  EXPECT_EQ(cases[0].source_viewpoint.position, Eigen::Vector3d(0, -1.5, 2000));
+  EXPECT_EQ(cases[0].target_viewpoint.position, Eigen::Vector3d(0, 0, 10));
+  EXPECT_EQ(cases[1].source_viewpoint.kind, Kind::none);
+  EXPECT_EQ(cases[1].target_viewpoint.kind, Kind::automatic);
+  complains(columns + "a,x.ply,y.ply,none,0,0,0 0,\n", {"line 2", "column 7 (source_viewpoint)", "'0 0'", "x y z"});
+  EXPECT_EQ(read_cases(file(std::string(header) + "a,g,x.ply,y.ply,none,0,0,1\n"))[0].source_viewpoint.kind,
+            Kind::none);
+}
+
 TEST_F(BenchmarkFiles, BrokenListsAreNamedByLineAndColumn) {
   const std::string good = "a,g,x.ply,y.ply,t.txt,5,0.005,1\n";
   complains("", {"cases.csv", "empty"});

@@ -36,6 +36,8 @@ class CaseReader {
     one.group = find_column(table_, "group") ? text(record, "group") : "all";
     one.source = folder_ / text(record, "source");
     one.target = folder_ / text(record, "target");
+    one.source_viewpoint = viewpoint(record, "source_viewpoint");
+    one.target_viewpoint = viewpoint(record, "target_viewpoint");
     const std::string truth = text(record, "truth");
     one.truth = truth == "none" ? Truth::none : truth == "-" ? Truth::unknown : Truth::known;
     if (one.truth == Truth::known) {
@@ -59,6 +61,20 @@ class CaseReader {
       fail_at(table_, record, *find_column(table_, name), io::in_quotes(value) + " is not a number above 0");
     }
     return *number;
+  }
+
+  // "x y z" as well as what the option of igsp align takes; unknown where nothing is said.
+  ViewpointRequest viewpoint(const CsvRecord& record, std::string_view name) const {
+    const auto column = find_column(table_, name);
+    const std::string value = column ? record.fields[*column] : "";
+    if (value.empty()) return {.kind = ViewpointRequest::Kind::none};
+    const auto words = io::split_words(value);
+    try {
+      return parse_viewpoint(name, words.size() == 3 ? fmt::format("{}", fmt::join(words, ",")) : value);
+    } catch (const InvalidArgument&) {
+      fail_at(table_, record, *column,
+              io::in_quotes(value) + " is not a viewpoint: three finite numbers x y z, none, auto or nothing");
+    }
   }
 
   const CsvTable& table_;

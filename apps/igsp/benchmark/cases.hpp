@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "igsp/viewpoint.hpp"
+
 namespace igsp::cli {
 
 enum class Truth {
@@ -22,6 +24,8 @@ struct BenchmarkCase {
   Truth truth = Truth::unknown;
   std::filesystem::path truth_file;  ///< target_from_source; empty unless the truth is known
   double max_rotation_error_deg = 0.0;
+  ViewpointRequest source_viewpoint{.kind = ViewpointRequest::Kind::none};  ///< in the files' frames
+  ViewpointRequest target_viewpoint{.kind = ViewpointRequest::Kind::none};
   double max_displacement = 0.0;  ///< of the source's centroid [units of the cloud]
 };
 

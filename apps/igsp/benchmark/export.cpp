@@ -33,6 +33,11 @@ std::optional<BenchmarkPair> try_read(const BenchmarkCase& one) {
   }
 }
 
+std::string text_of(const std::optional<Eigen::Vector3d>& viewpoint) {
+  if (!viewpoint) return "";
+  return text_of(viewpoint->x()) + " " + text_of(viewpoint->y()) + " " + text_of(viewpoint->z());
+}
+
 // The line of the list; the names of cases make poor names of files, so those are numbered.
 std::string write_case(const BenchmarkCase& one, const BenchmarkPair& pair, const fs::path& folder,
                        std::size_t number) {
@@ -44,7 +49,8 @@ std::string write_case(const BenchmarkCase& one, const BenchmarkPair& pair, cons
   if (known) write_transformation(folder / file("truth.txt"), pair.target_from_scrambled());
   return csv_line({one.name, one.group, file("source.ply"), file("target.ply"),
                    known ? file("truth.txt") : std::string(to_string(one.truth)), text_of(one.max_rotation_error_deg),
-                   text_of(one.max_displacement)});
+                   text_of(one.max_displacement), text_of(pair.source.viewpoint.viewpoint),
+                   text_of(pair.target.viewpoint.viewpoint)});
 }
 
 }  // namespace
@@ -55,8 +61,8 @@ std::size_t export_cases(const std::vector<BenchmarkCase>& cases, const std::opt
   fs::create_directories(folder, error);
   if (error) throw FileError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
   check_writable(folder / "cases.csv");
-  std::string list =
-      csv_line({"name", "group", "source", "target", "truth", "max_rotation_error_deg", "max_translation_error_m"});
+  std::string list = csv_line({"name", "group", "source", "target", "truth", "max_rotation_error_deg",
+                               "max_translation_error_m", "source_viewpoint", "target_viewpoint"});
   std::size_t written = 0;
   for (const BenchmarkCase& one : cases) {
     stop_if_interrupted();

@@ -25,6 +25,8 @@ BenchmarkPair read_pair(const BenchmarkCase& one) {
   if (one.truth == Truth::known) pair.truth = read_transformation(one.truth_file);
   pair.source = read_cloud(one.source, all_points, "read source", go_on);
   pair.target = read_cloud(one.target, all_points, "read target", go_on);
+  settle_viewpoint(pair.source, one.source_viewpoint);
+  settle_viewpoint(pair.target, one.target_viewpoint);
   pair.source_centroid = centroid_of(pair.source.points);
   return pair;
 }
@@ -32,6 +34,8 @@ BenchmarkPair read_pair(const BenchmarkCase& one) {
 void scramble_source(BenchmarkPair& pair, const BenchmarkCase& one, std::uint64_t seed) {
   pair.motion = scramble(seed, one.name, centre_of(pair.source.bounds), pair.source.bounds.diagonal());
   for (Eigen::Vector3d& point : pair.source.points) point = pair.motion * point;
+  std::optional<Eigen::Vector3d>& viewpoint = pair.source.viewpoint.viewpoint;
+  if (viewpoint) viewpoint = pair.motion * *viewpoint;
 }
 
 }  // namespace igsp::cli

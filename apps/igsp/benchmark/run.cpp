@@ -71,7 +71,7 @@ void run_case(const BenchmarkTask& task, BenchmarkRow& row) {
   if (task.scramble_seed) scramble_source(pair, task.one, *task.scramble_seed);
 
   const Seconds before = Seconds::now();
-  const Result result = align(pair.source.points, pair.target.points, options, go_on);
+  const Result result = align(pair.source.scan(), pair.target.scan(), options, go_on);
   const Seconds spent = read + (Seconds::now() - before);
   row.cpu_seconds = spent.cpu;
   row.wall_seconds = spent.wall;

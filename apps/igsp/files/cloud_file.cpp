@@ -51,4 +51,18 @@ std::size_t CloudFile::declared_points() const {
   return own ? own->declared_points() : 0;
 }
 
+std::optional<Eigen::Vector3d> CloudFile::viewpoint() const {
+  return std::visit([](const auto& reader) { return reader.viewpoint(); }, reader_);
+}
+
+std::string CloudFile::note() const {
+  const ForeignCloud* foreign = std::get_if<ForeignCloud>(&reader_);
+  return foreign ? foreign->note() : "";
+}
+
+std::size_t CloudFile::scans() const {
+  const ForeignCloud* foreign = std::get_if<ForeignCloud>(&reader_);
+  return foreign ? foreign->scans() : 1;
+}
+
 }  // namespace igsp::cli

@@ -54,12 +54,19 @@ CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points,
   }
   cloud.points = kept.take();
   cloud.dropped = reader.dropped();
+  cloud.declared_viewpoint = reader.viewpoint();
+  cloud.scans = reader.scans();
+  cloud.note = reader.note();
   check_extent(cloud);
   return cloud;
 }
 
 void settle_viewpoint(CloudInput& cloud, const ViewpointRequest& request) {
-  cloud.viewpoint = find_viewpoint(cloud.points, request);
+  if (request.kind == ViewpointRequest::Kind::automatic && cloud.scans > 1) {
+    cloud.viewpoint = {{}, fmt::format("unknown: {} scans in one file, each with a viewpoint of its own", cloud.scans), ""};
+    return;
+  }
+  cloud.viewpoint = find_viewpoint(cloud.points, request, cloud.declared_viewpoint);
 }
 
 Points read_centroids(const CloudInput& cloud, double voxel_size, std::string_view stage,

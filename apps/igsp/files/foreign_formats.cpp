@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "igsp/errors.hpp"
 #include "io/file_format.hpp"
 
@@ -40,14 +42,14 @@ void write_moved_foreign(const fs::path& source, const fs::path& output, const T
 
 void check_not_foreign(const fs::path& path) {
   const std::string extension = io::extension_of(path);
-  const bool las = extension == ".las" || extension == ".laz";
-  if (!las && extension != ".e57" && extension != ".ptx") return;
+  static const std::map<std::string, std::string> extras = {{".las", "[las]"},  {".laz", "[las]"},  {".e57", "[e57]"},
+                                                            {".ptx", ""},       {".obj", "[mesh]"}, {".off", "[mesh]"},
+                                                            {".stl", "[mesh]"}, {".vtk", ""}};
+  const auto extra = extras.find(extension);
+  if (extra == extras.end()) return;
   throw FileError(
       fmt::format("{}: this build of igsp does not know {} files; the same command from pip install 'igsp{}' does",
-                  path.string(), extension,
-                  las                   ? "[las]"
-                  : extension == ".e57" ? "[e57]"
-                                        : ""));
+                  path.string(), extension, extra->second));
 }
 
 }  // namespace igsp::cli

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "igsp/point_cloud.hpp"
@@ -13,6 +14,10 @@ struct ForeignCloud {
   std::string format;  ///< what people call it, such as "LAZ"
   ChunkSource next_chunk;
   std::function<std::size_t()> dropped;  ///< non-finite points met so far
+  // After the last chunk:
+  std::function<std::optional<Eigen::Vector3d>()> viewpoint;  ///< where the file says that the scanner stood
+  std::function<std::size_t()> scans;                         ///< how many the points are of
+  std::function<std::string()> note;                          ///< what was left out, in words; mostly empty
 };
 
 /// Files that igsp cannot read or write by itself, and who can: the Python package fills this, the plain command has

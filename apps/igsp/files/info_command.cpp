@@ -42,6 +42,11 @@ double spacing_of(PointView cloud, const Bounds& bounds, double voxel_size) {
   return unit * distances[distances.size() / 2];
 }
 
+std::string viewpoint_text(const ViewpointFinding& found) {
+  if (!found.viewpoint) return found.reason;
+  return fmt::format("at {:.10g}: {}", fmt::join(found.viewpoint->begin(), found.viewpoint->end(), " "), found.reason);
+}
+
 void print_info(const CloudInput& cloud) {
   const Eigen::Vector3d extent = cloud.bounds.max - cloud.bounds.min;
   const double magnitude = cloud.bounds.min.cwiseAbs().cwiseMax(cloud.bounds.max.cwiseAbs()).maxCoeff();
@@ -51,6 +56,7 @@ void print_info(const CloudInput& cloud) {
   std::cout << fmt::format("  format                {}\n", cloud.format);
   std::cout << fmt::format("  points                {}{}\n", cloud.total,
                            cloud.dropped > 0 ? fmt::format(" and {} dropped, not finite", cloud.dropped) : "");
+  if (!cloud.note.empty()) std::cout << fmt::format("  note                  {}\n", cloud.note);
   std::cout << fmt::format("  extent                {:.6g} x {:.6g} x {:.6g}\n", extent.x(), extent.y(), extent.z());
   std::cout << fmt::format("  from                  {:.10g}\n",
                            fmt::join(cloud.bounds.min.data(), cloud.bounds.min.data() + 3, " "));
@@ -60,6 +66,7 @@ void print_info(const CloudInput& cloud) {
                            std::ldexp(magnitude, -24));
   std::cout << fmt::format("  spacing               {:.4g}{}\n", spacing,
                            cloud.whole() ? "" : " (of the points kept in memory)");
+  std::cout << fmt::format("  scanner               {}\n", viewpoint_text(cloud.viewpoint));
   std::cout << fmt::format("  suggested voxel size  {:.4g}\n", voxel_size);
 }
 
@@ -71,8 +78,9 @@ struct InfoSettings {
 int run_info(const InfoSettings& settings) {
   for (const fs::path& path : settings.paths) {
     ProgressBar bar(true);
-    const CloudInput cloud = read_cloud(path, kept_points, "read", bar.callback(), settings.read);
+    CloudInput cloud = read_cloud(path, kept_points, "read", bar.callback(), settings.read);
     bar.finish();
+    settle_viewpoint(cloud, {});
     print_info(cloud);
   }
   return exit_registered;

@@ -9,6 +9,7 @@
 #include "files/cloud_file.hpp"
 #include "files/foreign_formats.hpp"
 #include "igsp/errors.hpp"
+#include "io/file_format.hpp"
 #include "io/moved_copy.hpp"
 
 namespace igsp::cli {
@@ -42,7 +43,9 @@ void write_coordinates(const CloudInput& source, const fs::path& output, const T
     for (Eigen::Vector3d& point : moved) point = target_from_source * point;
     return moved;
   };
-  write_points(output, source.total, chunks, {.format = format_of(output), .single_precision = floats});
+  WriteOptions options{.single_precision = floats};
+  if (source.declared_viewpoint) options.viewpoint = target_from_source * *source.declared_viewpoint;
+  write_points(output, source.total, chunks, options);
 }
 
 /// What is lost, and which name would keep it; nothing where the source holds no more.
@@ -69,6 +72,10 @@ std::vector<std::string> kept_coordinates_only(const CloudInput& source, const f
 void check_moved_output(const fs::path& source, const fs::path& output) {
   if (moves_foreign(source, output)) return;
   if (reads_foreign(output)) {
+    if (io::extension_of(source) == io::extension_of(output)) {
+      throw InvalidArgument(fmt::format("-o {}: {} is only read; name it .ply, which holds the points", output.string(),
+                                        output.extension().string()));
+    }
     throw InvalidArgument(fmt::format("-o {}: {} is written only from a SOURCE of the same format, not from {}",
                                       output.string(), output.extension().string(), source.string()));
   }

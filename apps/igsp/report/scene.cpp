@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "core/parallel.hpp"
+#include "report/seen_through.hpp"
 #include "shell/interrupt.hpp"
 #include "spatial/local_pca.hpp"
 #include "spatial/point_grid.hpp"
@@ -125,14 +127,45 @@ std::vector<std::uint8_t> distances(const Points& drawn, const LocalCloud& targe
   return bytes;
 }
 
+/// Both clouds as their scanners saw each other, as far as the run knows where these stood.
+class SeenThrough {
+ public:
+  SeenThrough(const Json& run, const LocalCloud& source, const LocalCloud& target)
+      : threads_(run["options"]["threads"].get<int>()),
+        source_(image_of(run, "source", source)),
+        target_(image_of(run, "target", target)) {}
+
+  /// For each cloud the points that contradict the pose, null where nothing is known.
+  Json contradicting(const Points& source, const Points& target, const Transformation& place) const {
+    const auto bytes_of = [&](const Points& points, const std::optional<RangeImage>& scanner, const auto& motion) {
+      return scanner ? Json(base64(seen_through(points, *scanner, motion, threads_))) : Json(nullptr);
+    };
+    return {{"source", bytes_of(source, target_, place)}, {"target", bytes_of(target, source_, place.inverse())}};
+  }
+  bool knows_any() const { return source_ || target_; }
+
+ private:
+  static std::optional<RangeImage> image_of(const Json& run, const char* name, const LocalCloud& cloud) {
+    const Json& at = run[name]["viewpoint"];
+    if (at.is_null()) return std::nullopt;
+    const Eigen::Vector3d viewpoint(at[0].get<double>(), at[1].get<double>(), at[2].get<double>());
+    return range_image_of(cloud.points, viewpoint - cloud.origin, run["voxel_size"].get<double>());
+  }
+
+  int threads_;
+  std::optional<RangeImage> source_, target_;
+};
+
 }  // namespace
 
 Json report_scene(const Json& run, PointView source_points, PointView target_points) {
   const LocalCloud source = localised(source_points, "source"), target = localised(target_points, "target");
   const std::vector<Pose> poses = poses_of(run);
-  const std::size_t budget = max_scene_bytes / (2 * point_bytes + poses.size());
+  const SeenThrough seen(run, source, target);
+  const std::size_t pose_bytes = seen.knows_any() ? 3 : 1;
+  const std::size_t budget = max_scene_bytes / (2 * point_bytes + pose_bytes * poses.size());
   const std::size_t count = std::max<std::size_t>(1, std::min(max_drawn_points, budget));
-  const Points drawn = thinned(source.points, count);
+  const Points drawn = thinned(source.points, count), drawn_target = thinned(target.points, count);
   const double voxel_size = run["voxel_size"].get<double>(), reach = reach_in_voxels * voxel_size;
   const PointGrid grid(target.points, reach / 6.0);
   const int threads = run["options"]["threads"].get<int>();
@@ -140,12 +173,13 @@ Json report_scene(const Json& run, PointView source_points, PointView target_poi
 
   Json scene = {{"reach", reach}, {"reach_in_voxels", reach_in_voxels}};
   scene["source"] = drawn_cloud(source, drawn, voxel_size, threads);
-  scene["target"] = drawn_cloud(target, thinned(target.points, count), voxel_size, threads);
+  scene["target"] = drawn_cloud(target, drawn_target, voxel_size, threads);
   scene["poses"] = Json::array();
   for (const Pose& pose : poses) {
     stop_if_interrupted();
     Transformation place = pose.target_from_source;  // of the source's local coordinates in the target's
     place.translation() = pose.target_from_source * source.origin - target.origin;
+    const Json contradicting = seen.contradicting(drawn, drawn_target, place);
     const bool far = place.translation().norm() > 2.0 * room;
     const double distance = place.translation().norm();
     if (far) place.translation() = 0.55 * room * Eigen::Vector3d::UnitX();
@@ -153,7 +187,8 @@ Json report_scene(const Json& run, PointView source_points, PointView target_poi
                               {"k", pose.k},
                               {"matrix", cli::to_json(place)},
                               {"drawn_nearer", far ? Json(distance) : Json(nullptr)},
-                              {"distances", base64(distances(drawn, target, grid, place, reach, threads))}});
+                              {"distances", base64(distances(drawn, target, grid, place, reach, threads))},
+                              {"contradicting", contradicting}});
   }
   return scene;
 }

@@ -35,7 +35,7 @@ int run_simulate(const SimulateSettings& settings) {
   for (std::size_t i = 0; i < scans.size(); ++i) {
     stop_if_interrupted();
     const fs::path cloud = file(fmt::format("station_{}.ply", i));
-    write_points(cloud, scans[i].points, {.format = FileFormat::ply_binary_little_endian, .single_precision = true});
+    write_points(cloud, scans[i].points, {.single_precision = true, .viewpoint = scans[i].viewpoint});
     std::cout << fmt::format("{}  {} points\n", cloud.string(), scans[i].points.size());
   }
   for (std::size_t i = 1; i < scans.size(); ++i) {

@@ -1,5 +1,7 @@
 """Survey formats: LAS, LAZ, COPC, E57, PTX and PTS, read as points and written moved with all that belongs to them.
 
+The vertices of OBJ, OFF and STL are read with `pip install 'igsp[mesh]'`, the points of legacy VTK files with nothing.
+
 LAS, LAZ and COPC need `pip install 'igsp[las]'`, E57 needs `pip install 'igsp[e57]'`; PTX and PTS need nothing.
 What each format keeps and how its poses, scales and coordinate systems are treated: docs/formats.md.
 """
@@ -13,7 +15,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _e57_reader, _e57_writer, _las_reader, _las_writer, _motion, _pts, _ptx
+from . import _e57_reader, _e57_writer, _las_reader, _las_writer, _mesh, _motion, _pts, _ptx, _vtk
 from ._cloud import Cloud, FormatError, Metadata, MissingPackageError, PathLike, Points, Scan, Selection
 
 __all__ = [
@@ -24,6 +26,7 @@ __all__ = [
     "MissingPackageError",
     "Scan",
     "is_supported",
+    "is_written",
     "read_chunks",
     "read_cloud",
     "read_metadata",
@@ -38,6 +41,10 @@ _READERS: dict[str, ModuleType] = {
     ".e57": _e57_reader,
     ".ptx": _ptx,
     ".pts": _pts,
+    ".obj": _mesh,
+    ".off": _mesh,
+    ".stl": _mesh,
+    ".vtk": _vtk,
 }
 _WRITERS: dict[str, ModuleType] = {
     ".las": _las_writer,
@@ -46,6 +53,11 @@ _WRITERS: dict[str, ModuleType] = {
     ".ptx": _ptx,
     ".pts": _pts,
 }
+
+
+def is_written(path: PathLike) -> bool:
+    """True if `write_aligned` takes a source of this name."""
+    return _extension(path) in _WRITERS
 
 
 def is_supported(path: PathLike) -> bool:
@@ -62,6 +74,7 @@ class ChunkReader(Iterator[Points]):
         self.metadata = Metadata(_known_extension(path)[1:])
         self.dropped = 0
         """Points met so far that were left out because a coordinate is not finite."""
+        self._selection = selection
         reader = _READERS[_known_extension(path)]
         self._chunks: Iterator[Points] = reader.read(path, selection, self.metadata, points_per_chunk)
 
@@ -75,29 +88,67 @@ class ChunkReader(Iterator[Points]):
                 return points
         raise StopIteration
 
+    @property
+    def note(self) -> str:
+        """What was left out beside `dropped`, in words; mostly empty."""
+        if not self.metadata.noise:
+            return ""
+        return (
+            f"left out {self.metadata.noise} points that are classified as noise (7, 18) or withheld; "
+            "igsp.formats.read_cloud(path, keep_noise=True) keeps them"
+        )
+
+    @property
+    def scan_count(self) -> int:
+        """How many scans of the file the points are of, as far as it has been read."""
+        return len(self._scans_read())
+
+    @property
+    def viewpoint(self) -> Points | None:
+        """(3,): where the scanner stood in the frame of the points, once the last chunk has been read.
+
+        None if the file does not say it (no pose, or one that moves nothing), and for several scans.
+        """
+        scans = self._scans_read()
+        pose = scans[0].pose if len(scans) == 1 else None
+        if pose is None or (pose == np.eye(4)).all():
+            return None
+        return pose[:3, 3].copy() if self._selection.apply_pose else np.zeros(3)
+
+    def _scans_read(self) -> list[Scan]:
+        scans = enumerate(self.metadata.scans)
+        return [scan for index, scan in scans if self._selection.includes(index) and scan.point_count > 0]
+
 
 def read_chunks(
-    path: PathLike, points_per_chunk: int = POINTS_PER_CHUNK, *, scan: int | None = None, apply_pose: bool = True
+    path: PathLike,
+    points_per_chunk: int = POINTS_PER_CHUNK,
+    *,
+    scan: int | None = None,
+    apply_pose: bool = True,
+    keep_noise: bool = False,
 ) -> ChunkReader:
     """Iterates over the points in arrays of at most `points_per_chunk` rows, (N, 3) float64; see `read_cloud`."""
-    return ChunkReader(path, points_per_chunk, Selection(scan, apply_pose))
+    return ChunkReader(path, points_per_chunk, Selection(scan, apply_pose, keep_noise))
 
 
-def read_cloud(path: PathLike, *, scan: int | None = None, apply_pose: bool = True) -> Cloud:
+def read_cloud(path: PathLike, *, scan: int | None = None, apply_pose: bool = True, keep_noise: bool = False) -> Cloud:
     """Reads the points of a file.
 
     Args:
-        path: its extension says which format: .las, .laz (also COPC), .e57, .ptx or .pts.
+        path: its extension says which format: .las, .laz (also COPC), .e57, .ptx, .pts, .obj, .off, .stl or .vtk.
         scan: index of the scan to read, from 0; all of them by default. LAS and PTS files are one scan.
         apply_pose: whether the points of every scan are brought to the file's frame by its pose (E57, PTX);
             otherwise they stay in the frame of their scanner.
+        keep_noise: whether points of LAS that are classified as noise (7, 18) or withheld are among the points;
+            otherwise `metadata.noise` counts them.
 
     Raises:
         FormatError: an OSError; names the path, what is wrong and at which line or byte.
         MissingPackageError: an ImportError; names the package to install.
         ValueError: the file has no such scan.
     """
-    reader = read_chunks(path, scan=scan, apply_pose=apply_pose)
+    reader = read_chunks(path, scan=scan, apply_pose=apply_pose, keep_noise=keep_noise)
     points = np.empty((0, 3))
     count = 0
     for chunk in reader:
@@ -106,7 +157,15 @@ def read_cloud(path: PathLike, *, scan: int | None = None, apply_pose: bool = Tr
         points[count : count + len(chunk)] = chunk
         count += len(chunk)
     points.resize((count, 3), refcheck=False)
-    return Cloud(points, reader.metadata.format, reader.dropped, reader.metadata)
+    return Cloud(
+        points,
+        reader.metadata.format,
+        reader.dropped,
+        reader.metadata,
+        reader.viewpoint,
+        reader.scan_count,
+        reader.note,
+    )
 
 
 def read_metadata(path: PathLike) -> Metadata:
@@ -142,7 +201,9 @@ def write_aligned(
         ValueError: target_from_source is not a rigid motion, or the file has no such scan.
     """
     motion = _motion.as_rigid(target_from_source, "target_from_source")
-    writer = _WRITERS[_known_extension(source_path)]
+    writer = _WRITERS.get(_known_extension(source_path))
+    if writer is None:
+        raise FormatError(output_path, f"{_extension(source_path)} is only read: igsp.write_points writes the points")
     if _WRITERS.get(_extension(output_path)) is not writer:
         known = " or ".join(extension for extension, module in _WRITERS.items() if module is writer)
         raise FormatError(output_path, f"the source is written in its own format: the name must end in {known}")

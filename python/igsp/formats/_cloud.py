@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import importlib
 import os
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -36,6 +39,23 @@ def require(module: str, path: PathLike, extra: str) -> Any:
         ) from error
 
 
+@contextmanager
+def faults_of_package(path: PathLike, where: Callable[[], str]) -> Iterator[None]:
+    """What a package raises over a file is the file's fault, and no list of it is complete: a division by zero in a
+    table of dimensions, a panic of a decoder (which is no Exception)."""
+    try:
+        yield
+    except (OSError, MemoryError):
+        raise
+    except BaseException as error:
+        if not isinstance(error, Exception) and type(error).__name__ != "PanicException":
+            raise
+        reason = (str(error).splitlines() or [type(error).__name__])[0]  # the rest is for the package's authors
+        lacking = re.search("not supported|is unknown", reason)
+        advice = "write the file anew with another program" if lacking else "cut short or damaged?"
+        raise FormatError(path, f"{where()}: {reason}: {advice}") from error
+
+
 @dataclass(frozen=True)
 class Scan:
     """One scan of a file that holds several (E57, PTX), or one block of a PTS file."""
@@ -56,6 +76,7 @@ class Metadata:
     offset: tuple[float, float, float] | None = None  # LAS
     crs_wkt: str | None = None  # coordinate reference system as well-known text
     epsg: int | None = None  # its EPSG code, where the file gives one
+    noise: int = 0  # LAS: points classified as noise (7, 18) and withheld ones that were left out
     no_return: int = 0  # cells of a scan's grid, or points flagged invalid, that carry no point; left out
 
 
@@ -67,6 +88,9 @@ class Cloud:
     format: str
     dropped: int  # points left out because a coordinate is not finite
     metadata: Metadata
+    viewpoint: Points | None = None  # (3,): where the scanner stood in the frame of the points, if the file says it
+    scan_count: int = 1  # of which the points are: several have no viewpoint in common
+    note: str = ""  # what was left out beside `dropped`, in words
 
 
 @dataclass(frozen=True)
@@ -75,6 +99,7 @@ class Selection:
 
     scan: int | None = None  # None: all scans
     apply_pose: bool = True
+    keep_noise: bool = False
 
     def includes(self, index: int) -> bool:
         return self.scan is None or self.scan == index

@@ -86,12 +86,22 @@ def describe(path: PathLike, element: minidom.Element, index: int) -> Scan:
     points = child(element, "points")
     try:
         count = int(points.getAttribute("recordCount")) if points else 0
-        return Scan(text_of(child(element, "name")) or f"scan {index}", count, pose_of(element))
+        if count < 0:
+            raise ValueError(f"it claims {count} points")
+        return Scan(text_of(child(element, "name")) or f"scan {index}", count, _pose_of(element))
     except ValueError as error:
         raise FormatError(path, f"scan {index}: {error}") from error
 
 
-def pose_of(element: minidom.Element) -> Points | None:
+def pose_of_image(path: PathLike, element: minidom.Element, index: int) -> Points | None:
+    """file_from_image, None if it has none. Throws FormatError."""
+    try:
+        return _pose_of(element)
+    except ValueError as error:
+        raise FormatError(path, f"image {index}: {error}") from error
+
+
+def _pose_of(element: minidom.Element) -> Points | None:
     """file_from_scan, None if the scan has none. Throws ValueError if it is not a rigid motion."""
     pose = child(element, "pose")
     if pose is None:

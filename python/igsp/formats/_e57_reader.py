@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _crs, _e57_file, _motion
-from ._cloud import FormatError, Metadata, PathLike, Points, Selection, require
+from ._cloud import FormatError, Metadata, PathLike, Points, Selection, faults_of_package, require
 
 CARTESIAN = ("cartesianX", "cartesianY", "cartesianZ")
 SPHERICAL = ("sphericalRange", "sphericalAzimuth", "sphericalElevation")
@@ -58,15 +58,12 @@ class _ScanReader:
     def records(self, capacity: int) -> Iterator[tuple[Points, NDArray[np.bool_]]]:
         """Points (N, 3), and which of them are valid (N,). Throws FormatError."""
         capacity = min(capacity, self.count)
-        try:
+        with faults_of_package(self.path, lambda: f"scan {self.index}"):
             image = self.libe57.ImageFile(os.fspath(self.path), "r")
             try:
                 yield from self._read(image, capacity)
             finally:
                 image.close()
-        except self.libe57.E57Exception as error:
-            reason = (str(error).splitlines() or ["cannot be read"])[0]  # the rest is for the library's authors
-            raise FormatError(self.path, f"scan {self.index}: {reason}") from error
 
     def _read(self, image: Any, capacity: int) -> Iterator[tuple[Points, NDArray[np.bool_]]]:
         coordinates = [np.empty(capacity) for _ in self.names]

@@ -27,7 +27,7 @@ def write_aligned(source: PathLike, output: PathLike, target_from_source: Points
         new = target_from_source @ old if selection.apply_pose else target_from_source
         _set_pose(layout.document, element, new)
         moved_scans[_e57_file.text_of(_e57_file.child(element, "guid"))] = new @ np.linalg.inv(old)
-    _move_images(layout.document, moved_scans, target_from_source if _moves_all(selection) else None)
+    _move_images(source, layout.document, moved_scans, target_from_source if _moves_all(selection) else None)
     with open(source, "rb") as file, atomic_output(output) as moved:
         _copy_with_document(source, file, moved, layout)
 
@@ -36,12 +36,14 @@ def _moves_all(selection: Selection) -> bool:
     return selection.scan is None and selection.apply_pose
 
 
-def _move_images(document: minidom.Document, moved_scans: dict[str, Points], others: Points | None) -> None:
+def _move_images(
+    path: PathLike, document: minidom.Document, moved_scans: dict[str, Points], others: Points | None
+) -> None:
     """An image moves with the scan it belongs to; one that names none only when the whole file moves."""
-    for image in _e57_file.image_elements(document):
+    for index, image in enumerate(_e57_file.image_elements(document)):
         guid = _e57_file.text_of(_e57_file.child(image, "associatedData3DGuid"))
         motion = moved_scans.get(guid, others) if guid else others
-        pose = _e57_file.pose_of(image)
+        pose = _e57_file.pose_of_image(path, image, index)
         if motion is not None and pose is not None:
             _set_pose(document, image, motion @ pose)
 

@@ -6,10 +6,16 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from . import _las_layout
-from ._cloud import FormatError, Metadata, PathLike, Points, Scan, Selection, require
+from . import _las_layout, _laz_layout
+from ._cloud import FormatError, Metadata, PathLike, Points, Scan, Selection, faults_of_package, require
 from ._las_layout import Layout
+
+NOISE_CLASSES = (7, 18)  # low and high noise, table 17 of the LAS 1.4 specification
+FIRST_WITH_FLAGS = 6  # of the point formats, those that have a byte for flags; before, three bits beside the class
+WITHHELD = 4
+BYTES_AT_ONCE = 1 << 28  # of records, before a single one of them has been seen
 
 
 def describe(path: PathLike, layout: Layout, metadata: Metadata) -> None:
@@ -27,34 +33,50 @@ def read(path: PathLike, selection: Selection, metadata: Metadata, points_per_ch
     layout = _las_layout.read_layout(path)
     describe(path, layout, metadata)
     selection.require_scan(path, 1)
-    for records in read_records(path, layout, points_per_chunk, coordinates_only=True):
+    for records in read_records(path, layout, points_per_chunk, points_only=True):
+        if not selection.keep_noise:
+            noise = is_noise(records, layout.point_format)
+            metadata.noise += int(np.count_nonzero(noise))
+            records = records[~noise]
         stored = np.column_stack([records["X"], records["Y"], records["Z"]])
         yield stored * layout.scale + layout.offset
 
 
-def read_records(
-    path: PathLike, layout: Layout, points_per_chunk: int, coordinates_only: bool = False
-) -> Iterator[Any]:
-    """Structured arrays of point records, as stored. Throws FormatError if there are fewer than declared."""
+def is_noise(records: Any, point_format: int) -> NDArray[np.bool_]:
+    """(N,): classified as noise, or withheld: what their maker asks to leave out."""
+    if point_format < FIRST_WITH_FLAGS:
+        flags, classes = records["raw_classification"] >> 5, records["raw_classification"] & 0x1F
+    else:
+        flags, classes = records["classification_flags"], records["classification"]
+    noise: NDArray[np.bool_] = np.isin(classes, NOISE_CLASSES) | (flags & WITHHELD != 0)
+    return noise
+
+
+def read_records(path: PathLike, layout: Layout, points_per_chunk: int, points_only: bool = False) -> Iterator[Any]:
+    """Structured arrays of point records, as stored. Throws FormatError if there are fewer than declared.
+
+    `points_only`: nothing but coordinates, classes and flags has to be right.
+    """
     laspy = require("laspy", path, "las")
     if layout.compressed:
         require("lazrs", path, "las")
+        _laz_layout.check(path, layout)
+    points_per_chunk = min(points_per_chunk, max(1, BYTES_AT_ONCE // layout.record_length))
     fields = laspy.DecompressionSelection.all()
-    if coordinates_only:  # spares LAZ of point formats 6 to 10 the decompression of the rest
-        fields = laspy.DecompressionSelection.base().decompress_z()
+    if points_only:  # spares LAZ of point formats 6 to 10 the decompression of the rest
+        fields = laspy.DecompressionSelection.base().decompress_z().decompress_classification().decompress_flags()
     total = 0
-    try:
-        with laspy.open(
+    with (
+        faults_of_package(path, lambda: f"after point {total} of {layout.point_count}"),
+        laspy.open(
             path, laz_backend=laspy.LazBackend.LazrsParallel, read_evlrs=False, decompression_selection=fields
-        ) as reader:
-            while total < layout.point_count:
-                records = reader.read_points(points_per_chunk).array
-                if not len(records):
-                    break
-                total += len(records)
-                yield records
-    except (laspy.LaspyException, RuntimeError, ValueError, OverflowError) as error:
-        fault = f"after point {total} of {layout.point_count}: {error}: cut short or damaged?"
-        raise FormatError(path, fault) from error
+        ) as reader,
+    ):
+        while total < layout.point_count:
+            records = reader.read_points(points_per_chunk).array
+            if not len(records):
+                break
+            total += len(records)
+            yield records
     if total != layout.point_count:
         raise FormatError(path, f"the file ends after {total} of {layout.point_count} points")

@@ -14,7 +14,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _las_layout, _motion
+from . import _las_layout, _laz_layout, _motion
 from ._atomic import atomic_output
 from ._cloud import FormatError, PathLike, Points, Selection, require
 from ._las_layout import Layout, Record
@@ -23,7 +23,6 @@ from ._las_reader import read_records
 POINTS_AT_ONCE = 500_000
 COPY_AT_ONCE = 1 << 22
 LARGEST = 2**31 - 1  # magnitude of a stored coordinate
-LASZIP_USER, LASZIP_RECORD = "laszip encoded", 22204
 WAVEFORM_FORMATS = (4, 5, 9, 10)
 
 
@@ -114,7 +113,7 @@ class _Copy:
         kept = [record for record in self.layout.records if not _describes_storage(record)]
         data = [self._bytes(record.start, record.end) for record in kept]
         if laszip:
-            head = _las_layout.VLR_FULL.pack(0, LASZIP_USER.encode(), LASZIP_RECORD, len(laszip), b"by igsp")
+            head = _las_layout.VLR_FULL.pack(0, _laz_layout.USER.encode(), _laz_layout.NUMBER, len(laszip), b"by igsp")
             data.append(head + laszip)
         end = self.layout.records[-1].end if self.layout.records else len(self.layout.header)
         return b"".join(data) + self._bytes(end, self.layout.points_start), len(data)
@@ -169,4 +168,4 @@ class _Copy:
 
 def _describes_storage(record: Record) -> bool:
     """True of compression and octree, which are made anew or do not fit the moved points."""
-    return (record.user, record.number) == (LASZIP_USER, LASZIP_RECORD) or record.user == "copc"
+    return (record.user, record.number) == (_laz_layout.USER, _laz_layout.NUMBER) or record.user == "copc"

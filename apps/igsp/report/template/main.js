@@ -78,7 +78,14 @@ function start() {
   let view = null;
   try {
     view = new View(byId('picture'));
-    for (const pose of scene.poses) pose.separation = new THREE.BufferAttribute(pose.distances, 1, true);
+    for (const pose of scene.poses) {
+      pose.separation = new THREE.BufferAttribute(pose.distances, 1, true);
+      pose.contradicts = {};
+      for (const name of ['source', 'target']) {
+        const bytes = pose.contradicting[name];
+        pose.contradicts[name] = bytes && new THREE.BufferAttribute(bytesOf(bytes), 1);
+      }
+    }
   } catch (error) {
     byId('no-picture').hidden = false;
   }
@@ -144,6 +151,9 @@ function connectTools(view) {
   toggle('show-target', (on) => { view.target.visible = on; view.draw(); });
   toggle('show-matches', (on) => { view.matches.visible = on; view.draw(); });
   toggle('by-distance', (on) => { byId('scale').hidden = !on; view.colourByDistance(on); });
+  const known = Object.values(scene.poses[0].contradicting).some((bytes) => bytes);
+  byId('contradicting-group').hidden = !known;
+  toggle('show-contradicting', (on) => view.markContradicting(on && known));
   toggle('compare', (on) => {
     byId('before-label').hidden = !on;
     byId('stage').classList.toggle('comparing', on);

@@ -4,9 +4,10 @@
 const vertexShader = `
   attribute vec3 normals;  // of either sign
   attribute float separation;
+  attribute float contradicts;  // 1: in space that the other scanner saw through
   uniform float pointSize;
-  uniform bool byDistance;
-  uniform vec3 plain, far, ramp[4];
+  uniform bool byDistance, markContradicting;
+  uniform vec3 plain, far, contradicting, ramp[4];
   uniform float lift;  // towards the eye, along the ray: decides who hides whom, moves nothing on the screen
   uniform mat3 turn;
   varying vec3 shade;
@@ -17,10 +18,12 @@ const vertexShader = `
     graded = mix(graded, ramp[2], clamp(s - 1.0, 0.0, 1.0));
     graded = mix(graded, ramp[3], clamp(s - 2.0, 0.0, 1.0));
     shade = !byDistance ? plain : separation > 0.999 ? far : graded;
+    bool marked = markContradicting && contradicts > 0.5;
+    if (marked) shade = contradicting;
     vec3 eye = normalize(cameraPosition - place.xyz);
     shade *= mix(0.6, 1.08, abs(dot(normalize(turn * normals + 1e-6), eye)));
     gl_Position = projectionMatrix * viewMatrix * (place + vec4(lift * eye, 0.0));
-    gl_PointSize = pointSize;
+    gl_PointSize = marked ? 1.5 * pointSize : pointSize;
   }`;
 const fragmentShader = `
   varying vec3 shade;
@@ -77,7 +80,9 @@ class View {
     geometry.setAttribute('position', new THREE.BufferAttribute(coordinates, 3, true));
     geometry.setAttribute('normals', new THREE.BufferAttribute(new Int8Array(bytesOf(cloud.normals).buffer), 3, true));
     geometry.setAttribute('separation', new THREE.BufferAttribute(new Uint8Array(cloud.drawn).fill(255), 1, true));
+    geometry.setAttribute('contradicts', this.none(cloud));
     const uniforms = {
+      markContradicting: {value: false}, contradicting: {value: new THREE.Color()},
       pointSize: {value: 2}, byDistance: {value: false}, lift: {value: 0}, turn: {value: new THREE.Matrix3()},
       plain: {value: new THREE.Color()}, far: {value: new THREE.Color()},
       ramp: {value: rampColours.map((one) => new THREE.Color(one))},
@@ -87,6 +92,10 @@ class View {
     points.frustumCulled = false;
     this.world.add(points);
     return points;
+  }
+
+  none(cloud) {
+    return new THREE.BufferAttribute(new Uint8Array(cloud.drawn), 1);
   }
 
   setPose(pose) {
@@ -101,6 +110,9 @@ class View {
     this.source.material.uniforms.turn.value.setFromMatrix4(matrix);
     this.source.matrix = matrix.multiply(this.unit(scene.source));
     this.source.geometry.setAttribute('separation', pose.separation);
+    for (const name of ['source', 'target']) {
+      if (pose.contradicts[name]) this[name].geometry.setAttribute('contradicts', pose.contradicts[name]);
+    }
     this.matches.remove(...this.matches.children);
     this.matches.add(...this.matchObjects(pose));
   }
@@ -234,7 +246,10 @@ class View {
     this.renderer.setClearColor(colour('stage'));
     this.source.material.uniforms.plain.value.set(colour('source'));
     this.target.material.uniforms.plain.value.set(colour('target'));
-    for (const cloud of [this.source, this.target]) cloud.material.uniforms.far.value.set(colour('far'));
+    for (const cloud of [this.source, this.target]) {
+      cloud.material.uniforms.far.value.set(colour('far'));
+      cloud.material.uniforms.contradicting.value.set(colour('empty'));
+    }
     for (const pose of scene.poses) pose.objects = null;
     this.draw();
   }
@@ -243,6 +258,11 @@ class View {
     this.source.material.uniforms.byDistance.value = on;
     this.source.material.uniforms.lift.value = on ? scene.reach / 5 : 0;  // its colours before the grey of the target
     this.target.material.uniforms.byDistance.value = on;  // it has no distances: all of it grey
+    this.draw();
+  }
+
+  markContradicting(on) {
+    for (const cloud of [this.source, this.target]) cloud.material.uniforms.markContradicting.value = on;
     this.draw();
   }
 
