@@ -55,15 +55,17 @@ double hidden_from_about(const TrimmedCloud& cloud, int resolution) {
 }  // namespace
 
 ViewpointFinding viewpoint_at_origin(PointView points) {
-  bounds_of(points, "cloud");
-  Points returned;  // scanners put what they did not see there, and from beside it would hide little
-  std::ranges::copy_if(points, std::back_inserter(returned), [](const auto& point) { return !point.isZero(0); });
-  if (returned.empty()) return unknown("there is nothing beside its origin");
-  const TrimmedCloud cloud(returned, "cloud");
-  const Bounds& bounds = cloud.bounds();
-  if ((bounds.min.array() >= 0).any() || (bounds.max.array() <= 0).any()) {
+  const TrimmedCloud all(points, "cloud");
+  if ((all.bounds().min.array() >= 0).any() || (all.bounds().max.array() <= 0).any()) {
     return unknown("its origin lies outside of the cloud");
   }
+  // Scanners put there what they did not see, and from beside it that would hide little.
+  const auto is_return = [](const Eigen::Vector3d& point) { return !point.isZero(0); };
+  Points returned;
+  if (!std::ranges::all_of(all.points(), is_return)) {
+    std::ranges::copy_if(all.points(), std::back_inserter(returned), is_return);
+  }
+  const TrimmedCloud cloud = returned.empty() ? all : TrimmedCloud(returned, "cloud");
   if (!(ratio_of_ranges(cloud.points()) > least_range_ratio)) {
     return unknown("the points are about equally far from its origin");
   }

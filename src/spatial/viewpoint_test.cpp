@@ -161,7 +161,7 @@ TEST(ViewpointAtOrigin, UnknownInDoubt) {
   for (int i = 0; i < 20000; ++i) ball.push_back(random.direction());
   expect_reason(ball, "about equally far");
   expect_reason(room_about_the_scanner(500), "too few");
-  expect_reason(Points(100, Vector3d::Zero()), "nothing beside its origin");
+  expect_reason(Points(100, Vector3d::Zero()), "outside");
 }
 
 TEST(ParseViewpoint, EveryForm) {
