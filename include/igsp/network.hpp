@@ -19,7 +19,8 @@ namespace igsp {
 struct NetworkOptions {
   Options pair;  ///< of the features and of every pair; its voxel size, if set, is that of all scans
 
-  /// A link in no loop joins scans only with at least this confidence, [0.5, 1], ...
+  /// A link in no loop joins scans only with at least this confidence, [0.5, 1] (where both viewpoints are known and no
+  /// scan stands in what the other scanner saw through, being registered is enough), ...
   double min_unconfirmed_confidence = 0.95;
 
   /// ... and at least so many agreeing matches: a bare room fits every other one like it, on few matches.
@@ -48,6 +49,7 @@ struct NetworkLink {
   std::size_t mutual_matches = 0;                                  ///< of the pair alone, as in Evidence ...
   std::size_t agreeing_matches = 0;                                ///< ... and those of them that agree
   double violation = 0;                                            ///< of free space, [0, 1)
+  std::size_t in_view = 0;  ///< voxels of one scan in view of the other, the fewer; 0 unless both viewpoints are known
   std::size_t consistent_triangles = 0;  ///< loops of three registered links that close, with this one in it
   double residual = 0;  ///< RMS displacement of the source's points, pair against network [units of the cloud]
   Precision precision;  ///< of the pair alone

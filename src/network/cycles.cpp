@@ -3,11 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <span>
 
 #include "estimation/robust_fit.hpp"
 
 namespace igsp {
 namespace {
+
+// Two links from copies of the same room support each other, and both stand in what a scanner saw through.
+bool proves_nothing(const LinkGraph& graph, std::span<const LinkStep> loop) {
+  return std::ranges::count_if(loop, [&](const LinkStep& step) { return graph.links[step.link].is_doubtful; }) > 1;
+}
 
 LinkStep towards(const LinkGraph& graph, std::size_t link, std::size_t scan) {
   return {link, graph.links[link].target == scan};
@@ -30,6 +36,7 @@ std::vector<CycleSupport> cycle_support(const LinkGraph& graph) {
         if (ac == later[a].end()) continue;
         const std::array<LinkStep, 3> loop = {towards(graph, ab, b), towards(graph, bc, c),
                                               towards(graph, ac->second, a)};
+        if (proves_nothing(graph, loop)) continue;
         const double error = loop_error(graph, loop);
         const bool closes = error < max_loop_error;
         // Right links agree far better than they must; what just closes may have done so by chance.

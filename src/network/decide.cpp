@@ -57,6 +57,11 @@ void place_scans(Network& network, const BalancedPoses& poses, std::span<const S
 
 // Of a registered pair whose scans were not joined.
 std::string why_apart(const NetworkLink& link, const NetworkOptions& options) {
+  if (is_doubtful(link)) {
+    return fmt::format("{:.1f} % of the points lie where the other scanner saw through, and no link without such a doubt "
+                       "confirms it",
+                       100 * link.violation);
+  }
   if (link.consistent_triangles == 0 && link.agreeing_matches < options.min_unconfirmed_matches) {
     return fmt::format("in no loop that would confirm it, and {} agreeing matches are too few to stand alone (bare rooms "
                        "fit each other)",
@@ -84,6 +89,7 @@ void name_states(Network& network, const MeasuredGraph& measured, const Balanced
       used.push_back(l);
       continue;
     }
+    if (link.state == LinkState::not_registered) continue;
     link.state = LinkState::rejected;
     link.reason = std::isfinite(poses.errors[l])
                       ? fmt::format("the other links of the network put the pair {:.1f} sigma elsewhere",
@@ -95,6 +101,10 @@ void name_states(Network& network, const MeasuredGraph& measured, const Balanced
   const std::vector<bool> in_no_loop = bridges(network.scans.size(), edges);
   for (std::size_t k = 0; k < used.size(); ++k) {
     NetworkLink& link = network.links[measured.link_of[used[k]]];
+    if (link.state == LinkState::not_registered) {
+      link.reason = "refused as a pair, used since nothing in the network or in the free space speaks against it: " +
+                    link.reason;
+    }
     link.state = in_no_loop[k] ? LinkState::unconfirmed : LinkState::used;
   }
 }

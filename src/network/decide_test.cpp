@@ -61,6 +61,51 @@ TEST(Decide, LowConfidenceInNoLoopDoesNotJoin) {
   EXPECT_NE(network.links[0].reason.find("a confidence of 0.80 is too low"), std::string::npos);
 }
 
+TEST(Decide, LowConfidenceJoinsWhereScannersSawNothingInTheWay) {
+  Chain chain(2);
+  chain.network.links[0].confidence = 0.6;
+  chain.network.links[0].in_view = 400;
+  EXPECT_EQ(Chain(chain).decided().components.size(), 1u);
+  chain.network.links[0].violation = 0.01;
+  EXPECT_EQ(Chain(chain).decided().components.size(), 2u);
+  chain.network.links[0].violation = 0;
+  chain.network.links[0].in_view = 20;
+  EXPECT_EQ(Chain(chain).decided().components.size(), 2u);
+}
+
+TEST(Decide, RefusedPairJoinsOnlyWhereNothingSpeaksAgainstIt) {
+  Chain chain(2);
+  NetworkLink& refused = chain.network.links[0];
+  refused.state = LinkState::not_registered;
+  refused.reason = "too little to tell it from chance";
+  refused.confidence = 0.1;
+  EXPECT_EQ(Chain(chain).decided().links[0].reason, "too little to tell it from chance");
+  EXPECT_EQ(Chain(chain).decided().components.size(), 2u);
+  refused.in_view = 400;
+  const Network joined = Chain(chain).decided();
+  EXPECT_EQ(joined.components.size(), 1u);
+  EXPECT_EQ(joined.links[0].state, LinkState::unconfirmed);
+  EXPECT_EQ(joined.links[0].reason.find("refused as a pair"), 0u);
+  refused.agreeing_matches = 20;
+  EXPECT_EQ(Chain(chain).decided().components.size(), 2u);
+}
+
+// Scan 2 was put into a copy of the room of 0 and 1: both links agree, and both violate the free space.
+TEST(Decide, DoubtfulLinksDoNotConfirmEachOther) {
+  Chain chain(3);
+  chain.network.links.push_back(Chain::link(2, 0));
+  EXPECT_EQ(Chain(chain).decided().components.size(), 1u);
+  for (const std::size_t wrong : {1, 2}) {
+    chain.network.links[wrong].confidence = 0.66;
+    chain.network.links[wrong].violation = 0.05;
+  }
+  const Network network = Chain(chain).decided();
+  EXPECT_EQ(network.components, (std::vector<std::vector<std::size_t>>{{0, 1}, {2}}));
+  EXPECT_NE(network.links[2].reason.find("no link without such a doubt"), std::string::npos);
+  chain.network.links[2].violation = 0.001;
+  EXPECT_EQ(chain.decided().components.size(), 1u);
+}
+
 TEST(Decide, LoopConfirmsLinksThatCouldNotStandAlone) {
   Chain chain(3);
   chain.network.links.push_back(Chain::link(2, 0));

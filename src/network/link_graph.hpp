@@ -17,6 +17,7 @@ struct GraphLink {
   Matrix6 tolerance = Matrix6::Identity();  ///< covariance of what it may be off and still be right: it judges loops
   double weight = 1;                        ///< of its vote
   bool may_stand_alone = true;              ///< joins scans without a loop that confirms it
+  bool is_doubtful = false;                 ///< something speaks against it: it does not confirm others like it
 };
 
 /// Scans (their centres, in their own frames) and links.

@@ -15,10 +15,14 @@ constexpr double pull_floor = 0.1;  // [voxels]
 // What is right within two or three voxels is right; loops are judged by it.
 constexpr double judging_floor = 0.7;  // [voxels]
 
-// Right poses have at most 0.05 (docs/network.md); beyond the first a pair needs others to confirm it, beyond the
-// second it is out.
-constexpr double doubtful_violation = 0.06;
+// Right poses have at most 0.05 and half of them 0.002 (docs/network.md). Up to the first, seen well, nothing speaks
+// against a pair; beyond the second it does not confirm others like it; beyond the third it needs others to confirm it;
+// beyond the last it is out.
+constexpr double clear_violation = 0.002;
+constexpr double doubtful_violation = 0.01;
+constexpr double lonely_violation = 0.06;
 constexpr double forbidden_violation = 0.12;
+constexpr std::size_t least_in_view = 100;
 
 constexpr double least_weight = 0.1, greatest_weight = 5;  // log odds
 
@@ -36,9 +40,14 @@ Matrix6 in_voxels(const Matrix6& covariance, double voxel_size) {
   return scale.asDiagonal() * covariance * scale.asDiagonal();
 }
 
+// The scanners saw much of each other's scans, and nothing in the way.
+bool is_clear(const NetworkLink& link) {
+  return link.in_view >= least_in_view && link.violation <= clear_violation;
+}
+
 bool may_stand_alone(const NetworkLink& link, const NetworkOptions& options) {
-  return link.confidence >= options.min_unconfirmed_confidence &&
-         link.agreeing_matches >= options.min_unconfirmed_matches && link.violation <= doubtful_violation;
+  return (is_clear(link) || link.confidence >= options.min_unconfirmed_confidence) &&
+         link.agreeing_matches >= options.min_unconfirmed_matches && link.violation <= lonely_violation;
 }
 
 GraphLink graph_link(const NetworkLink& link, const ScanShape& source, double voxel_size,
@@ -55,6 +64,7 @@ GraphLink graph_link(const NetworkLink& link, const ScanShape& source, double vo
   const double odds = link.confidence / std::max(1e-12, 1 - link.confidence);
   result.weight = std::clamp(std::log(odds), least_weight, greatest_weight);
   result.may_stand_alone = may_stand_alone(link, options);
+  result.is_doubtful = is_doubtful(link);
   return result;
 }
 
@@ -68,6 +78,14 @@ ScanShape shape_of(const Features& features) {
   return shape;
 }
 
+bool may_be_right(const NetworkLink& link, const NetworkOptions& options) {
+  return is_clear(link) && link.agreeing_matches >= options.min_unconfirmed_matches;
+}
+
+bool is_doubtful(const NetworkLink& link) {
+  return link.violation > doubtful_violation;
+}
+
 bool contradicts_free_space(const NetworkLink& link) {
   return link.violation > forbidden_violation;
 }
@@ -77,7 +95,8 @@ MeasuredGraph measured_graph(std::span<const NetworkLink> links, std::span<const
   MeasuredGraph measured;
   for (const ScanShape& shape : shapes) measured.graph.centres.push_back(shape.centre / voxel_size);
   for (std::size_t i = 0; i < links.size(); ++i) {
-    if (links[i].state == LinkState::not_registered || contradicts_free_space(links[i])) continue;
+    const bool is_there = links[i].state != LinkState::not_registered || may_be_right(links[i], options);
+    if (!is_there || contradicts_free_space(links[i])) continue;
     measured.graph.links.push_back(graph_link(links[i], shapes[links[i].source], voxel_size, options));
     measured.link_of.push_back(i);
   }

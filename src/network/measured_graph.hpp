@@ -15,14 +15,20 @@ struct ScanShape {
 };
 ScanShape shape_of(const Features& features);
 
-/// The registered pairs among `links` as a graph in voxels, and which link each of its links is. A pair that the free
-/// space speaks against clearly is left out.
+/// The pairs among `links` that are registered, or may be right, as a graph in voxels, and which link each of its links
+/// is. A pair that the free space speaks against clearly is left out.
 struct MeasuredGraph {
   LinkGraph graph;
   std::vector<std::size_t> link_of;  ///< per link of the graph
 };
 MeasuredGraph measured_graph(std::span<const NetworkLink> links, std::span<const ScanShape> shapes, double voxel_size,
                              const NetworkOptions& options);
+
+/// True of a pair, though refused by itself, that shares many matches and that the free space does not speak against.
+bool may_be_right(const NetworkLink& link, const NetworkOptions& options);
+
+/// True where the free space speaks against a pair, so that others must confirm it.
+bool is_doubtful(const NetworkLink& link);
 
 /// True where the free space forbids a pair, whatever else speaks for it.
 bool contradicts_free_space(const NetworkLink& link);

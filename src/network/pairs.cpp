@@ -1,5 +1,7 @@
 #include "network/pairs.hpp"
 
+#include <algorithm>
+
 #include "core/parallel.hpp"
 #include "igsp/align.hpp"
 
@@ -7,6 +9,11 @@ namespace igsp {
 namespace {
 
 constexpr std::size_t slice = 8;  // pairs between two reports
+
+// Of the direction that is seen less of.
+std::size_t in_view(const FreeSpace& space) {
+  return space.source && space.target ? std::min(space.source->in_view, space.target->in_view) : 0;
+}
 
 NetworkLink link_of(const ScanPair& pair, const Result& result) {
   NetworkLink link;
@@ -21,6 +28,7 @@ NetworkLink link_of(const ScanPair& pair, const Result& result) {
   link.mutual_matches = result.evidence.mutual_matches;
   link.agreeing_matches = result.evidence.agreeing_matches;
   link.violation = result.evidence.free_space.violation();
+  link.in_view = in_view(result.evidence.free_space);
   link.precision = result.precision;
   return link;
 }

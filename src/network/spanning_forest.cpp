@@ -66,11 +66,13 @@ class Growth {
     const std::size_t winner = std::max_element(votes.begin(), votes.end()) - votes.begin();
     double rival = 0;
     std::size_t group = 0;
+    bool is_doubtful = true;
     for (std::size_t i = 0; i < n; ++i) {
       if (agree[winner][i]) ++group;
+      if (agree[winner][i] && !graph_.links[links[i]].is_doubtful) is_doubtful = false;
       if (!agree[winner][i]) rival = std::max(rival, votes[i]);
     }
-    const bool confirmed = group > 1 || support_[links[winner]].triangles > 0;
+    const bool confirmed = (group > 1 && !is_doubtful) || support_[links[winner]].triangles > 0;
     if (votes[winner] < outweighs * rival) return {};
     if (!confirmed && !graph_.links[links[winner]].may_stand_alone) return {};
     return Proposal{links[winner], confirmed, votes[winner]};
