@@ -45,13 +45,12 @@ Stages after_features(const Stages& last) {
 }
 
 TEST(ProgressOfAlign, NamesEveryStage) {
-  const Pair pair = testing::simulated_pair("indoor", points);
-  const Pair hopeless{pair.source, testing::simulated_pair("indoor", points, 0, 8).target, pair.truth};
+  const Pair pair = testing::simulated_pair("park", points);
+  const Pair hopeless{pair.source, testing::simulated_pair("park", points, 0, 8).target, pair.truth};
   EXPECT_EQ(stages_of(reports_of(pair)),
             after_features({"hypotheses", "screening", "ranking", "loop", "refinement", "verdict"}));
-  EXPECT_EQ(stages_of(reports_of(hopeless)),
-            after_features({"hypotheses", "screening", "ranking", "hypotheses", "screening", "ranking", "loop", "refinement",
-                            "verdict"}))
+  EXPECT_EQ(stages_of(reports_of(hopeless)), after_features({"hypotheses", "screening", "ranking", "hypotheses",
+                                                             "screening", "ranking", "loop", "refinement", "verdict"}))
       << "the coarser scale does not settle this pair";
   EXPECT_EQ(stages_of(reports_of(pair, &pair.truth)), after_features({"loop", "refinement", "verdict"}));
 }

@@ -8,8 +8,8 @@
 #include <iostream>
 
 #include "benchmark/cases.hpp"
-#include "files/csv.hpp"
 #include "benchmark/judgement.hpp"
+#include "files/csv.hpp"
 #include "files/output_file.hpp"
 #include "igsp/errors.hpp"
 #include "igsp/io.hpp"

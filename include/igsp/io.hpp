@@ -28,10 +28,10 @@ struct ReadOptions {
 };
 
 /// Reads the points of a file in chunks: PLY (ascii, both byte orders), PCD (ascii, binary, binary_compressed) and
-/// text (XYZ, TXT, CSV, ASC, PTS and the like). The content decides between them, for text the extension. Properties other than x, y, z
-/// are skipped. Non-finite points are dropped and counted. A file that declares 0 points is an empty cloud, no error.
-/// Memory is bounded by a chunk whatever the file's size, save for PCD binary_compressed, whose body (at most 4 GiB)
-/// can only be decompressed whole.
+/// text (XYZ, TXT, CSV, ASC, PTS and the like). The content decides between them, for text the extension. Properties
+/// other than x, y, z are skipped. Non-finite points are dropped and counted. A file that declares 0 points is an empty
+/// cloud, no error. Memory is bounded by a chunk whatever the file's size, save for PCD binary_compressed, whose body
+/// (at most 4 GiB) can only be decompressed whole.
 class PointReader {
  public:
   static constexpr std::size_t default_chunk = 65536;
@@ -72,13 +72,13 @@ LoadedCloud read_points(const std::filesystem::path& path, const ReadOptions& op
 
 struct WriteOptions {
   std::optional<FileFormat> format = {};  ///< by default the one that the extension stands for
-  bool single_precision = false;     ///< coordinates rounded to float
+  bool single_precision = false;          ///< coordinates rounded to float
   /// Where the scanner stood; PLY and PCD keep it, text does not. PCD cannot tell the origin from not knowing.
   std::optional<Eigen::Vector3d> viewpoint = {};
 };
 
-/// The format that a path's extension stands for: .ply and .pcd binary, .xyz, .txt, .csv, .asc, .pts and the like text. Throws
-/// FileError otherwise.
+/// The format that a path's extension stands for: .ply and .pcd binary, .xyz, .txt, .csv, .asc, .pts and the like text.
+/// Throws FileError otherwise.
 FileFormat format_of(const std::filesystem::path& path);
 
 /// Writes to a temporary name beside `path`, then renames: nothing half-written is left. Every format reads back as

@@ -120,7 +120,8 @@ struct Result {
   Precision precision;
   double rmse = 0.0;        ///< inlier RMSE: distances along the normals where the surfaces meet [units of the cloud]
   double voxel_size = 0.0;  ///< [units of the cloud]
-  /// At which `source_keypoints`, `target_keypoints` and `iterations` were made [units of the cloud]: voxel_size or twice that.
+  /// At which `source_keypoints`, `target_keypoints` and `iterations` were made [units of the cloud]: voxel_size or
+  /// twice that.
   double loop_voxel_size = 0.0;
   CloudSummary source;
   CloudSummary target;

@@ -8,10 +8,10 @@
 
 namespace igsp::io {
 
-/// A file that appears under its name only when it is complete, and is on the disk by then: written without a name where
-/// the file system can (a process that is killed leaves nothing), else to a temporary one in the same folder; renamed by
-/// commit(), removed if commit() is never reached. A file that it replaces passes on its permissions and, where that is
-/// allowed, its owner; a link is followed, also to a file that is not there. Throws FileError.
+/// A file that appears under its name only when it is complete, and is on the disk by then: written without a name
+/// where the file system can (a process that is killed leaves nothing), else to a temporary one in the same folder;
+/// renamed by commit(), removed if commit() is never reached. A file that it replaces passes on its permissions and,
+/// where that is allowed, its owner; a link is followed, also to a file that is not there. Throws FileError.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& path);

@@ -58,14 +58,16 @@ void place_scans(Network& network, const BalancedPoses& poses, std::span<const S
 // Of a registered pair whose scans were not joined.
 std::string why_apart(const NetworkLink& link, const NetworkOptions& options) {
   if (is_doubtful(link)) {
-    return fmt::format("{:.1f} % of the points lie where the other scanner saw through, and no link without such a doubt "
-                       "confirms it",
-                       100 * link.violation);
+    return fmt::format(
+        "{:.1f} % of the points lie where the other scanner saw through, and no link without such a doubt "
+        "confirms it",
+        100 * link.violation);
   }
   if (link.consistent_triangles == 0 && link.agreeing_matches < options.min_unconfirmed_matches) {
-    return fmt::format("in no loop that would confirm it, and {} agreeing matches are too few to stand alone (bare rooms "
-                       "fit each other)",
-                       link.agreeing_matches);
+    return fmt::format(
+        "in no loop that would confirm it, and {} agreeing matches are too few to stand alone (bare rooms "
+        "fit each other)",
+        link.agreeing_matches);
   }
   if (link.consistent_triangles == 0 && link.confidence < options.min_unconfirmed_confidence) {
     return fmt::format("in no loop that would confirm it, and a confidence of {:.2f} is too low to stand alone",
@@ -102,8 +104,8 @@ void name_states(Network& network, const MeasuredGraph& measured, const Balanced
   for (std::size_t k = 0; k < used.size(); ++k) {
     NetworkLink& link = network.links[measured.link_of[used[k]]];
     if (link.state == LinkState::not_registered) {
-      link.reason = "refused as a pair, used since nothing in the network or in the free space speaks against it: " +
-                    link.reason;
+      link.reason =
+          "refused as a pair, used since nothing in the network or in the free space speaks against it: " + link.reason;
     }
     link.state = in_no_loop[k] ? LinkState::unconfirmed : LinkState::used;
   }

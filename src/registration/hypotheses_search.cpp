@@ -32,6 +32,7 @@ constexpr double enough_agreement = 0.6;
 constexpr double rival_inliers = 0.5;    // of the winner's
 constexpr double settled_quality = 1.5;  // decades, over other poses ...
 constexpr double settled_odds = 0.1;     // of chance: no wrong pose of 174 came below 0.3
+constexpr double settled_share = 1.25;   // of the agreement expected: right poses have 1.3 to 2, square rooms 1.1
 constexpr std::size_t max_hopeful = 16;
 constexpr std::size_t carried = 3;  // from the coarser scale to the finer
 
@@ -171,7 +172,7 @@ std::vector<Rival> rank(CommonFrame& frame, std::span<const Transformation> cand
 // explains them nearly as well.
 bool is_settled(std::span<const Rival> ranked, double voxel_size) {
   if (ranked.empty() || ranked.front().assessment.chance_odds() > settled_odds) return false;
-  if (ranked.front().assessment.share_of_expected() < 1) return false;
+  if (ranked.front().assessment.share_of_expected() < settled_share) return false;
   return std::none_of(ranked.begin() + 1, ranked.end(), [&](const Rival& rival) {
     return rival.assessment.quality > ranked.front().assessment.quality - settled_quality &&
            !same_pose(rival.target_from_source, ranked.front().target_from_source, Eigen::Vector3d::Zero(), voxel_size);
@@ -214,7 +215,8 @@ SearchOutcome hypotheses_search(CommonFrame& frame, CoarserScale& coarser, const
   std::vector<Rival> found;
   if (coarser.is_there()) {
     found = search_at(coarser.frame(), nullptr, {}, options, clock);
-    if (is_settled(found, coarser.frame().target().features.voxel_size)) {
+    // Without the refinement the pose would stay as coarse as the scale.
+    if (options.refinement.enabled && is_settled(found, coarser.frame().target().features.voxel_size)) {
       return finished(std::move(found), coarser.frame(), frame, options, clock);
     }
   }

@@ -44,8 +44,8 @@ void scale(RunnerUp& runner_up, double factor) {
 
 void scale_lengths(Result& result, double factor) {
   auto& [registered, confidence, reason, termination, target_from_source, has_estimate, overlap_source, overlap_target,
-         evidence, runner_up, precision, rmse, voxel_size, loop_voxel_size, source, target, source_keypoints, target_keypoints,
-         iterations, timings_s, options] = result;
+         evidence, runner_up, precision, rmse, voxel_size, loop_voxel_size, source, target, source_keypoints,
+         target_keypoints, iterations, timings_s, options] = result;
   scale(target_from_source, factor);
   if (runner_up) scale(*runner_up, factor);
   scale(precision, factor);

@@ -220,11 +220,12 @@ constexpr const char* examples =
 
 void add_viewpoint_flag(CLI::App& align, const std::string& cloud, std::string& text) {
   align
-      .add_option("--" + cloud + "-viewpoint", text,
-                  wrapped("where the scanner of the " + cloud +
-                          " stood, in the file's frame; a far point stands for one that looked along one direction. "
-                          "none: unknown, or a fused cloud; auto: what the file says, else its origin if the cloud shows "
-                          "it; x,y,z! is used even where the cloud contradicts it; default auto"))
+      .add_option(
+          "--" + cloud + "-viewpoint", text,
+          wrapped("where the scanner of the " + cloud +
+                  " stood, in the file's frame; a far point stands for one that looked along one direction. "
+                  "none: unknown, or a fused cloud; auto: what the file says, else its origin if the cloud shows "
+                  "it; x,y,z! is used even where the cloud contradicts it; default auto"))
       ->type_name("X,Y,Z|none|auto");
 }
 

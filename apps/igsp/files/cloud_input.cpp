@@ -63,7 +63,8 @@ CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points,
 
 void settle_viewpoint(CloudInput& cloud, const ViewpointRequest& request) {
   if (request.kind == ViewpointRequest::Kind::automatic && cloud.scans > 1) {
-    cloud.viewpoint = {{}, fmt::format("unknown: {} scans in one file, each with a viewpoint of its own", cloud.scans), ""};
+    cloud.viewpoint = {
+        {}, fmt::format("unknown: {} scans in one file, each with a viewpoint of its own", cloud.scans), ""};
     return;
   }
   cloud.viewpoint = find_viewpoint(cloud.points, request, cloud.declared_viewpoint);

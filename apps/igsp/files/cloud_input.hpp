@@ -14,16 +14,16 @@ namespace igsp::cli {
 /// A cloud as it came from a file.
 struct CloudInput {
   std::filesystem::path path;
-  ReadOptions options;         ///< as it was read, and is read again
-  std::string format;          ///< for people: "PLY, ascii"
-  Points points;               ///< all of them, or a sample if the file holds more than were asked for
-  std::size_t total = 0;       ///< finite points in the file
-  std::size_t dropped = 0;     ///< points left out for a coordinate that is not finite
-  Bounds bounds;               ///< of all points
+  ReadOptions options;      ///< as it was read, and is read again
+  std::string format;       ///< for people: "PLY, ascii"
+  Points points;            ///< all of them, or a sample if the file holds more than were asked for
+  std::size_t total = 0;    ///< finite points in the file
+  std::size_t dropped = 0;  ///< points left out for a coordinate that is not finite
+  Bounds bounds;            ///< of all points
   std::optional<Eigen::Vector3d> declared_viewpoint;  ///< what the file says
-  std::size_t scans = 1;       ///< in the file
-  std::string note;            ///< what was left out of the file, in words; mostly empty
-  ViewpointFinding viewpoint;  ///< where the scanner stood; unknown until settle_viewpoint
+  std::size_t scans = 1;                              ///< in the file
+  std::string note;                                   ///< what was left out of the file, in words; mostly empty
+  ViewpointFinding viewpoint;                         ///< where the scanner stood; unknown until settle_viewpoint
   bool whole() const { return points.size() == total; }
   Scan scan() const { return {points, viewpoint.viewpoint}; }
 };

@@ -111,8 +111,7 @@ DrawnScan drawn_scan(const Features& features, std::size_t scans) {
   const std::size_t size = features.points.size();
   for (const Eigen::Vector3d& point : features.points) centre += point / static_cast<double>(size);
   drawn.station = features.origin + features.viewpoint.value_or(centre);
-  const std::size_t wanted =
-      std::clamp(points_of_a_page / std::max<std::size_t>(1, scans), least_points, most_points);
+  const std::size_t wanted = std::clamp(points_of_a_page / std::max<std::size_t>(1, scans), least_points, most_points);
   const std::size_t stride = std::max<std::size_t>(1, size / wanted);
   for (std::size_t i = 0; i < size; i += stride) {
     for (const double number : features.points[i]) drawn.points.push_back(static_cast<float>(number));

@@ -57,14 +57,15 @@ std::string poses_csv(const NamedNetwork& named) {
 
 std::string links_csv(const NamedNetwork& named) {
   std::string table =
-      "source,target,state,confidence,overlap,rmse,mutual_matches,agreeing_matches,violation,consistent_triangles,residual,"
+      "source,target,state,confidence,overlap,rmse,mutual_matches,agreeing_matches,violation,consistent_triangles,"
+      "residual,"
       "qw,qx,qy,qz,tx,ty,tz,reason\n";
   for (const NetworkLink& link : named.network.links) {
     const Eigen::Quaterniond q = rotation_of(link.target_from_source);
     const Eigen::Vector3d& t = link.target_from_source.translation();
     table += csv_line({named.names[link.source], named.names[link.target], std::string(to_string(link.state)),
-                       text(link.confidence), text(link.overlap), text(link.rmse),
-                       std::to_string(link.mutual_matches), std::to_string(link.agreeing_matches), text(link.violation),
+                       text(link.confidence), text(link.overlap), text(link.rmse), std::to_string(link.mutual_matches),
+                       std::to_string(link.agreeing_matches), text(link.violation),
                        std::to_string(link.consistent_triangles), text(link.residual), text(q.w()), text(q.x()),
                        text(q.y()), text(q.z()), text(t.x()), text(t.y()), text(t.z()), link.reason});
   }
