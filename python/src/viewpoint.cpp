@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "arrays.hpp"
+#include "portable.hpp"
 
 namespace igsp::python {
 namespace {
@@ -27,7 +28,7 @@ ViewpointFinding find(const PointsIn& points, const std::string& name, const std
 }  // namespace
 
 void bind_viewpoint(nb::module_& module) {
-  nb::class_<ViewpointFinding>(module, "ViewpointFinding", "A scanner's viewpoint and why it is believed.")
+  portable_class<ViewpointFinding>(module, "ViewpointFinding", "A scanner's viewpoint and why it is believed.")
       .def_prop_ro(
           "viewpoint", [](const ViewpointFinding& finding) { return array_of(finding.viewpoint); },
           nb::rv_policy::automatic, "(3,) float64, in the frame of the points; None: unknown.")

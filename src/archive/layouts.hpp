@@ -10,6 +10,7 @@
 #include "igsp/features.hpp"
 #include "igsp/result.hpp"
 #include "igsp/simulation.hpp"
+#include "igsp/viewpoint.hpp"
 
 /// The one list of what is written of every struct: a new field is one line here, and without it nothing compiles.
 namespace igsp::archive {
@@ -188,6 +189,16 @@ struct Layout<Diagnosis> {
 };
 
 template <>
+struct Layout<ViewpointFinding> {
+  static constexpr std::string_view name = "ViewpointFinding";
+  static constexpr std::tuple fields = {
+      Field{"viewpoint", &ViewpointFinding::viewpoint},
+      Field{"reason", &ViewpointFinding::reason},
+      Field{"warning", &ViewpointFinding::warning},
+  };
+};
+
+template <>
 struct Layout<PoseError> {
   static constexpr std::string_view name = "PoseError";
   static constexpr std::tuple fields = {
@@ -219,7 +230,7 @@ struct Layout<SimulatedScan> {
 
 using AllStructs = std::tuple<StrayPoints, Features, KeypointMatch, IterationRecord, CloudSummary, FreeDirection,
                               Precision, FreeSpaceViolation, FreeSpace, Evidence, RunnerUp, Result, Diagnosis,
-                              PoseError, MatchQuality, SimulatedScan>;
+                              PoseError, MatchQuality, SimulatedScan, ViewpointFinding>;
 
 template <typename T>
 concept HasLayout = requires {

@@ -34,6 +34,7 @@ def bound_things(pair, features, result, truth):
     last = result.iterations[-1]
     quality = igsp.match_quality(last.correspondences, result.source_keypoints, result.target_keypoints, truth, 0.5)
     yield from [features[0], result, result.evidence, result.precision, result.source, last, quality]
+    yield igsp.find_viewpoint(pair[0], [0, 0, 0])
     yield from [igsp.pose_error(truth, np.eye(4), [1, 2, 3]), igsp.simulate("object", points=2000)[0]]
     plane = np.random.default_rng(0).uniform(size=(20000, 3)) * [1, 1, 0]
     flat = igsp.align(plane, plane)
