@@ -92,6 +92,14 @@ class Survey(Page):
         self.assertIn("registered 4 of 6 scans: 4 in one frame; 2 alone", self.find("verdict-title").text)
         self.assertIn("torn: ", self.find("warnings").text)
 
+    def test_nothing_runs_but_the_page_itself(self):
+        """Its content security policy: a script that came in later, by a name for example, is refused."""
+        self.script("const late = document.createElement('script'); late.textContent = 'window.broken = true';"
+                    "document.body.append(late)")
+        self.assertIsNone(self.script("return window.broken || null"))
+        refused = [entry["message"] for entry in self.browser.get_log("browser")]
+        self.assertEqual(["script-src" in message for message in refused], [True], refused)
+
     def test_map_shows_stations_and_the_links_between_them(self):
         self.assertEqual(len(self.all("#map circle")), 4)
         self.assertEqual(sorted(text.text for text in self.all("#map text")), [f"station_{i}" for i in range(4)])

@@ -89,7 +89,11 @@ const linkColumns = [
 const sigma = (scan, from) => Math.sqrt(scan.sigma.slice(from, from + 3).reduce((sum, s) => sum + s * s, 0));
 const stationColumns = [
   {title: 'Station', value: (s) => shortName(s.name),
-    decorate: (cell, s) => cell.prepend(element('i', '', {class: 'station', style: `background: ${stationColour(s.index, 55)}`}))},
+    decorate: (cell, s) => {
+      const swatch = element('i', '', {class: 'station'});
+      swatch.style.background = stationColour(s.index, 55);
+      cell.prepend(swatch);
+    }},
   {title: 'Frame', value: (s) => s.component + 1, kind: 'number'},
   {title: 'Position', value: (s) => s.place[0], text: (s) => s.place.map((x) => short(x, 6)).join(', '), kind: 'number',
     decorate: (cell, s) => { if (!s.station_known) cell.style.fontStyle = 'italic'; }},

@@ -117,7 +117,8 @@ function drawLinks(members, inside, settings, place, onLink) {
   });
   for (const i of members) {
     const [cx, cy] = at.get(i);
-    const circle = svgNode('circle', {cx, cy, r: 6, 'data-scan': i, style: `fill: ${stationColour(i, 55)}`});
+    const circle = svgNode('circle', {cx, cy, r: 6, 'data-scan': i});
+    circle.style.fill = stationColour(i, 55);  // the page's policy refuses style attributes
     circle.append(svgNode('title', {}, network.scans[i].name));
     map.append(circle);
     if (settings.names) map.append(svgNode('text', {x: cx + 9, y: cy + 4}, shortName(network.scans[i].name)));

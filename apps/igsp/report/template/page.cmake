@@ -22,7 +22,7 @@ add_custom_command(OUTPUT ${report_page_source}
   COMMAND ${CMAKE_COMMAND} -DOUTPUT=${report_page_source} -DTHREE=${IGSP_THREE_JS}
     -DORBIT_CONTROLS=${IGSP_ORBIT_CONTROLS_JS} -DTHREE_LICENCE=${IGSP_THREE_LICENCE}
     -DCHART=${IGSP_CHART_JS} -DCHART_LICENCE=${IGSP_CHART_LICENCE} -P ${page_template}/assemble.cmake
-  DEPENDS ${page_template}/assemble.cmake ${page_template}/page.html ${page_template}/style.css
+  DEPENDS ${page_template}/assemble.cmake ${page_template}/assembly.cmake ${page_template}/page.html ${page_template}/style.css
     ${page_template}/view.js ${page_template}/plots.js ${page_template}/words.js ${page_template}/main.js
     ${IGSP_THREE_JS} ${IGSP_ORBIT_CONTROLS_JS} ${IGSP_CHART_JS} ${IGSP_THREE_LICENCE} ${IGSP_CHART_LICENCE}
   COMMENT "Assembling the report page" VERBATIM)
