@@ -9,20 +9,6 @@
 namespace igsp::cli {
 namespace {
 
-Json rows(const Eigen::Matrix<double, 6, 6>& matrix) {
-  Json all = Json::array();
-  for (int i = 0; i < 6; ++i) {
-    Json row = Json::array();
-    for (int j = 0; j < 6; ++j) row.push_back(matrix(i, j));
-    all.push_back(row);
-  }
-  return all;
-}
-
-Json row(const Eigen::Vector3d& vector) {
-  return {vector.x(), vector.y(), vector.z()};
-}
-
 std::string short_name(const std::string& name) {
   return std::filesystem::path(name).stem().string();
 }
@@ -44,6 +30,21 @@ std::string groups(const Network& network) {
 
 }  // namespace
 
+Json link_summary(const NetworkLink& link) {
+  return {{"source", link.source},
+          {"target", link.target},
+          {"state", to_string(link.state)},
+          {"reason", link.reason},
+          {"confidence", link.confidence},
+          {"overlap", link.overlap},
+          {"rmse", link.rmse},
+          {"mutual_matches", link.mutual_matches},
+          {"agreeing_matches", link.agreeing_matches},
+          {"violation", link.violation},
+          {"consistent_triangles", link.consistent_triangles},
+          {"residual", link.residual}};
+}
+
 Json network_json(const NamedNetwork& named, const NetworkOptions& options) {
   const Network& network = named.network;
   Json scans = Json::array(), links = Json::array();
@@ -58,21 +59,11 @@ Json network_json(const NamedNetwork& named, const NetworkOptions& options) {
                      {"covariance", rows(scan.covariance)}});
   }
   for (const NetworkLink& link : network.links) {
-    links.push_back({{"source", link.source},
-                     {"target", link.target},
-                     {"state", to_string(link.state)},
-                     {"reason", link.reason},
-                     {"target_from_source", to_json(link.target_from_source)},
-                     {"confidence", link.confidence},
-                     {"overlap", link.overlap},
-                     {"rmse", link.rmse},
-                     {"mutual_matches", link.mutual_matches},
-                     {"agreeing_matches", link.agreeing_matches},
-                     {"violation", link.violation},
-                     {"consistent_triangles", link.consistent_triangles},
-                     {"residual", link.residual},
-                     {"centre", row(link.precision.centre)},
-                     {"covariance", rows(link.precision.covariance)}});
+    Json entry = link_summary(link);
+    entry.update({{"target_from_source", to_json(link.target_from_source)},
+                  {"centre", row(link.precision.centre)},
+                  {"covariance", rows(link.precision.covariance)}});
+    links.push_back(std::move(entry));
   }
   return {{"igsp", version},
           {"bundle_error", network.bundle_error},

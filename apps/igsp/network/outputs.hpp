@@ -27,6 +27,9 @@ std::string poses_tum(const NamedNetwork& named);
 /// scans in their order; an edge runs from target to source, its information about the source's origin.
 std::string network_g2o(const NamedNetwork& named);
 
+/// A link but for its pose.
+Json link_summary(const NetworkLink& link);
+
 /// Everything.
 Json network_json(const NamedNetwork& named, const NetworkOptions& options);
 

@@ -19,10 +19,6 @@ constexpr std::size_t least_points = 300, most_points = 4000;
 // Most pairs of a large survey do not overlap; the page shows the more likely ones of them, links.csv all.
 constexpr std::size_t most_refused = 500;
 
-Json row(const Eigen::Vector3d& vector) {
-  return {vector.x(), vector.y(), vector.z()};
-}
-
 std::string bytes_of(const std::vector<float>& numbers) {
   std::vector<std::uint8_t> bytes;
   for (const float number : numbers) {
@@ -48,21 +44,6 @@ Json scan_entry(const NamedNetwork& named, std::size_t i, const DrawnScan& drawn
           {"points_drawn", bytes_of(drawn.points)}};
 }
 
-Json link_entry(const NetworkLink& link) {
-  return {{"source", link.source},
-          {"target", link.target},
-          {"state", to_string(link.state)},
-          {"reason", link.reason},
-          {"confidence", link.confidence},
-          {"overlap", link.overlap},
-          {"rmse", link.rmse},
-          {"mutual_matches", link.mutual_matches},
-          {"agreeing_matches", link.agreeing_matches},
-          {"violation", link.violation},
-          {"consistent_triangles", link.consistent_triangles},
-          {"residual", link.residual}};
-}
-
 // Of the links, the most confident first within a state; of the refused not all.
 std::vector<const NetworkLink*> links_shown(const Network& network) {
   std::vector<const NetworkLink*> links;
@@ -81,7 +62,7 @@ Json data_of(const NamedNetwork& named, const NetworkOptions& options, std::span
   const Network& network = named.network;
   Json scans = Json::array(), links = Json::array(), counts = Json::object(), summary = Json::array();
   for (std::size_t i = 0; i < network.scans.size(); ++i) scans.push_back(scan_entry(named, i, drawn[i]));
-  for (const NetworkLink* link : links_shown(network)) links.push_back(link_entry(*link));
+  for (const NetworkLink* link : links_shown(network)) links.push_back(link_summary(*link));
   for (const LinkState state :
        {LinkState::used, LinkState::unconfirmed, LinkState::rejected, LinkState::not_registered}) {
     counts[std::string(to_string(state))] =

@@ -8,13 +8,12 @@
 #include "igsp/version.hpp"
 
 namespace igsp::cli {
-namespace {
 
-Json to_json(const OptionValue& value) {
-  return std::visit([](const auto& alternative) { return Json(alternative); }, value);
+Json row(const Eigen::Vector3d& vector) {
+  return {vector.x(), vector.y(), vector.z()};
 }
 
-Json rows(const auto& matrix) {
+Json rows(const Eigen::MatrixXd& matrix) {
   Json all = Json::array();
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
     Json row = Json::array();
@@ -22,6 +21,12 @@ Json rows(const auto& matrix) {
     all.push_back(row);
   }
   return all;
+}
+
+namespace {
+
+Json to_json(const OptionValue& value) {
+  return std::visit([](const auto& alternative) { return Json(alternative); }, value);
 }
 
 Json to_json(const CloudInput& input, const CloudSummary& summary) {
@@ -33,7 +38,7 @@ Json to_json(const CloudInput& input, const CloudSummary& summary) {
           {"keypoints", summary.keypoints},
           {"stray_points", summary.stray.count},
           {"stray_extents_away", summary.stray.extents_away},
-          {"viewpoint", summary.viewpoint ? Json(rows(summary.viewpoint->transpose())[0]) : Json(nullptr)},
+          {"viewpoint", summary.viewpoint ? row(*summary.viewpoint) : Json(nullptr)},
           {"viewpoint_because", input.viewpoint.reason}};
 }
 

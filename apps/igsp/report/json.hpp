@@ -12,6 +12,11 @@ namespace igsp::cli {
 
 using Json = nlohmann::ordered_json;
 
+/// An array of numbers.
+Json row(const Eigen::Vector3d& vector);
+/// An array of its rows.
+Json rows(const Eigen::MatrixXd& matrix);
+
 /// Four rows of four numbers.
 Json to_json(const Transformation& transformation);
 
