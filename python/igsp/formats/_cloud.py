@@ -109,3 +109,18 @@ class Selection:
         if self.scan is not None and not 0 <= self.scan < scan_count:
             known = f"0 to {scan_count - 1}" if scan_count else "none"
             raise ValueError(f"scan: {os.fspath(path)} has no scan {self.scan}; its scans: {known}")
+
+
+def single_scan(
+    points_of: Callable[[PathLike], Points],
+    path: PathLike,
+    selection: Selection,
+    metadata: Metadata,
+    points_per_chunk: int,
+) -> Iterator[Points]:
+    """The points of a format that is read whole: one scan, without a pose."""
+    selection.require_scan(path, 1)
+    points = points_of(path)
+    metadata.scans = [Scan("scan 0", len(points), None)]
+    for start in range(0, len(points), points_per_chunk):
+        yield points[start : start + points_per_chunk]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ._cloud import FormatError, Metadata, PathLike, Points, Scan, Selection, require
+from ._cloud import FormatError, Metadata, PathLike, Points, Scan, Selection, require, single_scan
 
 
 def read_metadata(path: PathLike, metadata: Metadata) -> None:
@@ -15,11 +15,7 @@ def read_metadata(path: PathLike, metadata: Metadata) -> None:
 
 
 def read(path: PathLike, selection: Selection, metadata: Metadata, points_per_chunk: int) -> Iterator[Points]:
-    selection.require_scan(path, 1)
-    vertices = _vertices(path)
-    metadata.scans = [Scan("scan 0", len(vertices), None)]
-    for start in range(0, len(vertices), points_per_chunk):
-        yield vertices[start : start + points_per_chunk]
+    return single_scan(_vertices, path, selection, metadata, points_per_chunk)
 
 
 def _vertices(path: PathLike) -> Points:

@@ -7,7 +7,7 @@ from typing import BinaryIO
 
 import numpy as np
 
-from ._cloud import FormatError, Metadata, PathLike, Points, Scan, Selection
+from ._cloud import FormatError, Metadata, PathLike, Points, Scan, Selection, single_scan
 
 TYPES = {"float": ">f4", "double": ">f8", "int": ">i4", "unsigned_int": ">u4", "short": ">i2", "long": ">i8"}
 LONGEST_LINE = 4096
@@ -20,11 +20,7 @@ def read_metadata(path: PathLike, metadata: Metadata) -> None:
 
 
 def read(path: PathLike, selection: Selection, metadata: Metadata, points_per_chunk: int) -> Iterator[Points]:
-    selection.require_scan(path, 1)
-    points = _points(path)
-    metadata.scans = [Scan("scan 0", len(points), None)]
-    for start in range(0, len(points), points_per_chunk):
-        yield points[start : start + points_per_chunk]
+    return single_scan(_points, path, selection, metadata, points_per_chunk)
 
 
 def _points(path: PathLike) -> Points:
