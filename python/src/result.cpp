@@ -73,7 +73,9 @@ void bind_evidence(nb::module_& module) {
       .def_prop_ro(
           "viewpoint", [](const CloudSummary& cloud) { return array_of(cloud.viewpoint); }, nb::rv_policy::automatic,
           "(3,) float64: where the scanner stood, in the cloud's frame; None: unknown.");
-  portable_class<Evidence>(module, "Evidence", "What the verdict is made of: two independent questions to the clouds.")
+  portable_class<Evidence>(
+      module, "Evidence",
+      "What the verdict is made of: two independent questions to the clouds, three where a viewpoint is known.")
       .def_ro("mutual_matches", &Evidence::mutual_matches,
               "Mutual nearest neighbours among the descriptors in a common frame ...")
       .def_ro("agreeing_matches", &Evidence::agreeing_matches, "... and those of them within 2.5 voxels.")
