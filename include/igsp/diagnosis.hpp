@@ -19,19 +19,21 @@ enum class Cause {
   degrees,             ///< longitude and latitude beside heights
   coarse_coordinates,  ///< coordinates in steps that are no longer small against a voxel
   mirrored,            ///< one of the clouds is left-handed
+  scale,               ///< one of the clouds has another unit of length, or is measured too long
 };
 std::string_view to_string(Cause cause);
 
 struct Diagnosis {
   Cause cause = Cause::too_few_points;
   std::string description;  ///< one sentence: the cause, how it was seen, the remedy
-  /// What would register, p_target = (matrix * (p_source, 1)): with a reflection where mirrored. None: not looked for.
+  /// What would register, p_target = (matrix * (p_source, 1)): with a reflection where mirrored, a factor where the scale
+  /// differs. None: not looked for.
   std::optional<Eigen::Matrix4d> target_from_source;
 };
 
 struct DiagnosisOptions {
-  bool search = true;  ///< register the mirrored source, too, about as costly as the pair itself; false: only look at
-                       ///< the coordinates
+  bool search = true;  ///< also look whether the source would register mirrored or in another scale; false: only look
+                       ///< at the coordinates
 };
 
 /// Why `refused`, the answer to this pair, may have been refused; the options are those of that answer. Most likely

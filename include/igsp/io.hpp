@@ -93,6 +93,8 @@ void write_points(const std::filesystem::path& path, std::size_t count, const Ch
 /// 4x4 row-major text, as in `T.txt`: 16 numbers, or the 12 of its upper three rows, over any lines; # starts a
 /// comment. Throws FileError (also if the matrix is not a rigid motion to 1e-3). The numbers are taken as they are.
 Transformation read_transformation(const std::filesystem::path& path);
-void write_transformation(const std::filesystem::path& path, const Transformation& transformation);
+/// `scale`: the source is multiplied by it first, p_target = transformation * (scale * p_source). What then is no rigid
+/// motion is not read back.
+void write_transformation(const std::filesystem::path& path, const Transformation& transformation, double scale = 1.0);
 
 }  // namespace igsp

@@ -69,6 +69,8 @@ struct Precision {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  ///< inverse; 0 where not determined
+  double scale = 1.0;        ///< by which the source would have to be multiplied to fit best; see scale_sigma
+  double scale_sigma = 0.0;  ///< its standard deviation, from the residuals; 0: the surfaces do not tell the scale
   std::vector<FreeDirection> free_directions;  ///< at the pose; where it is refused and has none, of the target alone
 };
 

@@ -109,6 +109,10 @@ void bind_precision(nb::module_& module) {
       .def_prop_ro("information", &view_of_member<Precision, &Precision::information>, "(6, 6) float64.")
       .def_prop_ro("covariance", &view_of_member<Precision, &Precision::covariance>,
                    "(6, 6) float64: its inverse; 0 where not determined.")
+      .def_ro("scale", &Precision::scale,
+              "By which the source would have to be multiplied to fit best; see scale_sigma.")
+      .def_ro("scale_sigma", &Precision::scale_sigma,
+              "Standard deviation of scale, from the residuals; 0: the surfaces do not tell it.")
       .def_ro("free_directions", &Precision::free_directions, "Motions that the surfaces do not fix.");
 }
 

@@ -61,7 +61,7 @@ struct Listed<Termination> {
 template <>
 struct Listed<Cause> {
   static constexpr std::string_view name = "cause";
-  static constexpr Cause last = Cause::mirrored;
+  static constexpr Cause last = Cause::scale;
 };
 
 template <typename T>

@@ -108,6 +108,7 @@ struct Layout<Precision> {
   static constexpr std::tuple fields = {
       Field{"inlier_rmse", &Precision::inlier_rmse},         Field{"centre", &Precision::centre},
       Field{"information", &Precision::information},         Field{"covariance", &Precision::covariance},
+      Field{"scale", &Precision::scale},                     Field{"scale_sigma", &Precision::scale_sigma},
       Field{"free_directions", &Precision::free_directions},
   };
 };

@@ -1,5 +1,6 @@
 #include "diagnosis/coordinates.hpp"
 #include "diagnosis/mirrored.hpp"
+#include "diagnosis/scale.hpp"
 
 namespace igsp {
 namespace {
@@ -17,6 +18,16 @@ std::vector<Diagnosis> spoilt_coordinates(const Scan& source, const Scan& target
   return causes;
 }
 
+// What would register is a cause that is proven; one is enough.
+std::vector<Diagnosis> searched(const Scan& source, const Scan& target, const Result& refused,
+                                const ProgressCallback& progress) {
+  const SearchedPair pair(source, target, refused, progress);
+  std::vector<Diagnosis> causes;
+  add(causes, another_scale(source, target, pair, refused, progress));
+  if (causes.empty()) add(causes, mirrored(pair, progress));
+  return causes;
+}
+
 }  // namespace
 
 std::string_view to_string(Cause cause) {
@@ -31,6 +42,8 @@ std::string_view to_string(Cause cause) {
       return "coarse_coordinates";
     case Cause::mirrored:
       return "mirrored";
+    case Cause::scale:
+      return "scale";
   }
   return "unknown";
 }
@@ -39,7 +52,11 @@ std::vector<Diagnosis> diagnose(const Scan& source, const Scan& target, const Re
                                 const DiagnosisOptions& options, const ProgressCallback& progress) {
   if (refused.registered || !(refused.voxel_size > 0)) return {};
   std::vector<Diagnosis> causes = spoilt_coordinates(source, target, refused);
-  if (causes.empty() && options.search) add(causes, mirrored(source, target, refused, progress));
+  // A voxel that is wrong by a unit of length makes fine coordinates look coarse.
+  const bool may_be_scale = causes.empty() || causes.front().cause == Cause::coarse_coordinates;
+  if (may_be_scale && options.search) {
+    if (auto found = searched(source, target, refused, progress); !found.empty()) causes = std::move(found);
+  }
   add(causes, too_few_points(source.points, target.points));
   return causes;
 }

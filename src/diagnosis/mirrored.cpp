@@ -2,39 +2,30 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
 
+#include "features/extraction.hpp"
 #include "igsp/align.hpp"
+#include "registration/scale_votes.hpp"
 
 namespace igsp {
 namespace {
 
-// Whether there is an answer is asked, not how exact it is: fewer hypotheses and, where enough voxels are left, the
-// coarser scale keep the price well below that of the pair itself.
-constexpr int max_proposed = 12, max_refined = 2;
-constexpr std::size_t enough_voxels = 4000;
-
-// Any plane will do, the others differ by a rigid motion. Across a vertical one a levelled scan stays levelled.
-const Eigen::Vector3d reflection(-1, 1, 1);
+// Pairs that would register have votes for the scale 1 at this prominence, nearly all of them, and others seldom.
+constexpr double enough_prominence = 5.0;
+constexpr double largest_scale_error = 0.08;  // of the logarithm: a vote is no measurement
 
 }  // namespace
 
-std::optional<Diagnosis> mirrored(const Scan& source, const Scan& target, const Result& refused,
-                                  const ProgressCallback& progress) {
-  Points image(source.points.begin(), source.points.end());
-  for (Eigen::Vector3d& point : image) point = point.cwiseProduct(reflection);
-  std::optional<Eigen::Vector3d> viewpoint = source.viewpoint;
-  if (viewpoint) *viewpoint = viewpoint->cwiseProduct(reflection);
-  Options options = refused.options;
-  const bool coarser = std::min(refused.source.voxels, refused.target.voxels) >= enough_voxels;
-  options.scale.voxel_size = (coarser ? 2 : 1) * refused.voxel_size;
-  options.hypotheses.max_proposed = std::min(options.hypotheses.max_proposed, max_proposed);
-  options.hypotheses.max_refined = std::min(options.hypotheses.max_refined, max_refined);
-  const Result result = align({image, viewpoint}, target, options, progress);
+std::optional<Diagnosis> mirrored(const SearchedPair& pair, const ProgressCallback& progress) {
+  const Features image = mirrored_features(pair.source, pair.options);
+  const RatioPeak vote = scale_vote(image, pair.target, 1.0, pair.options);
+  if (vote.prominence < enough_prominence || std::abs(std::log(vote.factor)) > largest_scale_error) return std::nullopt;
+  const Result result = align(image, pair.target, pair.options, progress);
   if (!result.registered) return std::nullopt;
 
   Eigen::Matrix4d target_from_source = result.target_from_source.matrix();
-  target_from_source.leftCols<3>() *= reflection.asDiagonal();
+  target_from_source.col(0) *= -1;  // as mirrored_features does
   return Diagnosis{Cause::mirrored,
                    fmt::format("the mirrored source would register (confidence {:.3f}): one of the clouds is "
                                "left-handed; negate one of its axes or exchange two, unless the scene itself is "

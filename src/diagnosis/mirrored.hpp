@@ -1,13 +1,11 @@
 #pragma once
 
-#include <optional>
-
+#include "diagnosis/searched_pair.hpp"
 #include "igsp/diagnosis.hpp"
 
 namespace igsp {
 
-/// Registers the mirror image of the source with the options of the refused answer, at its voxel size.
-std::optional<Diagnosis> mirrored(const Scan& source, const Scan& target, const Result& refused,
-                                  const ProgressCallback& progress);
+/// Whether one of the clouds is left-handed: the mirrored source would register.
+std::optional<Diagnosis> mirrored(const SearchedPair& pair, const ProgressCallback& progress);
 
 }  // namespace igsp

@@ -15,4 +15,7 @@ Features extract_features(const TrimmedCloud& cloud, const std::optional<Eigen::
 /// The same cloud at voxels twice as large, from its finer ones.
 Features coarser_features(const Features& finer, const Options& options);
 
+/// What a plane mirror at the local origin shows, x being negated: the same keypoints, described anew.
+Features mirrored_features(const Features& features, const Options& options);
+
 }  // namespace igsp

@@ -106,6 +106,21 @@ Features extract_features(const TrimmedCloud& trimmed, const std::optional<Eigen
   return features;
 }
 
+Features mirrored_features(const Features& features, const Options& options) {
+  const Eigen::Vector3d reflection(-1, 1, 1);
+  Features image = features;
+  for (Points* points : {&image.points, &image.normals, &image.fine_points}) {
+    for (Eigen::Vector3d& point : *points) point = point.cwiseProduct(reflection);
+  }
+  image.origin = image.origin.cwiseProduct(reflection);
+  if (image.viewpoint) *image.viewpoint = image.viewpoint->cwiseProduct(reflection);
+  const ProgressCallback silent;
+  const StageClock clock(silent);
+  const PointGrid grid(image.points, 0.5 * options.keypoints.pca_radius * image.voxel_size);
+  describe_keypoints(grid, options, clock, image);
+  return image;
+}
+
 Features coarser_features(const Features& finer, const Options& options) {
   const ProgressCallback silent;
   StageClock clock(silent);

@@ -1,6 +1,7 @@
 #include "io/moved_fields.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "io/column_names.hpp"
@@ -46,7 +47,11 @@ std::vector<MovedFields> find_moved_fields(const std::vector<std::string>& names
 
 Eigen::Vector3d moved(const Eigen::Vector3d& values, bool direction, const Transformation& transformation) {
   if (!values.allFinite()) return values;
-  return direction ? Eigen::Vector3d(transformation.linear() * values) : Eigen::Vector3d(transformation * values);
+  if (!direction) return transformation * values;
+  const double cubed_scale = transformation.linear().determinant();
+  const bool rigid = std::abs(cubed_scale - 1) < 1e-6;
+  const Eigen::Vector3d turned = transformation.linear() * values;
+  return rigid ? turned : Eigen::Vector3d(turned / std::cbrt(cubed_scale));
 }
 
 }  // namespace igsp::io

@@ -25,6 +25,11 @@ std::optional<std::string> why_not_rigid(const Eigen::Matrix4d& matrix) {
   if ((matrix.row(3) - last_row).cwiseAbs().maxCoeff() > rigid_tolerance) return "the last row is not 0 0 0 1";
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
   const double deviation = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  const double scale = std::cbrt(rotation.determinant());
+  if (std::abs(scale - 1) > rigid_tolerance &&
+      (rotation.transpose() * rotation / (scale * scale)).isIdentity(rigid_tolerance)) {
+    return fmt::format("not a rigid motion: the matrix also multiplies by {:.6g}", scale);
+  }
   if (deviation > rigid_tolerance) {
     return fmt::format("not a rigid motion: R^T R differs from the identity by {:.3g} (at most {})", deviation,
                        rigid_tolerance);
@@ -65,12 +70,14 @@ Transformation read_transformation(const std::filesystem::path& path) {
   return transformation;
 }
 
-void write_transformation(const std::filesystem::path& path, const Transformation& transformation) {
+void write_transformation(const std::filesystem::path& path, const Transformation& transformation, double scale) {
   if (const auto reason = why_not_rigid(transformation.matrix())) throw InvalidArgument("transformation: " + *reason);
+  Eigen::Matrix4d matrix = transformation.matrix();
+  if (scale != 1) matrix.topLeftCorner<3, 3>() *= scale;
   std::string text;
   for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 4; ++column) {
-      io::append_number(text, transformation.matrix()(row, column));
+      io::append_number(text, matrix(row, column));
       text += column < 3 ? ' ' : '\n';
     }
   }

@@ -29,7 +29,7 @@ Arrays make_arrays(std::span<const Candidate> candidates, PointView source, Poin
 }
 
 struct Limits {
-  float length_tolerance, squared_min_length, min_cosine;
+  float length_tolerance, squared_min_length, min_cosine, min_direction_cosine;
 };
 
 IGSP_MULTIVERSION void agreement_row(const Arrays& arrays, std::size_t c, std::size_t words, Limits limits,
@@ -51,7 +51,18 @@ IGSP_MULTIVERSION void agreement_row(const Arrays& arrays, std::size_t c, std::s
       const int lengths = difference * difference < limits.length_tolerance * limits.length_tolerance * sum2;
       const int long_enough = (a2 > limits.squared_min_length) & (b2 > limits.squared_min_length);
       const int rotations = dot * dot > limits.min_cosine * limits.min_cosine;
-      agrees[lane] = static_cast<unsigned char>(lengths & long_enough & rotations);
+      // b - b' lies where the mean of both rotations turns a - a' to. With q = q_c + q_d, of the same sign:
+      // b . (q a q*) = 2 (u.a)(u.b) + (w^2 - u.u) a.b + 2 w (u x a).b, and |q|^2 = 2 + 2 |q_c . q_d|.
+      const float sign = dot < 0 ? -1.0f : 1.0f;
+      const float w = qw[c] + sign * qw[d], x = qx[c] + sign * qx[d], y = qy[c] + sign * qy[d],
+                  z = qz[c] + sign * qz[d];
+      const float ua = x * dax + y * day + z * daz, ub = x * dbx + y * dby + z * dbz;
+      const float ab = dax * dbx + day * dby + daz * dbz;
+      const float cross =
+          (y * daz - z * day) * dbx + (z * dax - x * daz) * dby + (x * day - y * dax) * dbz;
+      const float turned = 2.0f * ua * ub + (w * w - x * x - y * y - z * z) * ab + 2.0f * w * cross;
+      const int directions = turned > limits.min_direction_cosine * (1.0f + sign * dot) * (a2 + b2);
+      agrees[lane] = static_cast<unsigned char>(lengths & long_enough & rotations & directions);
     }
     std::uint64_t bits = 0;
     for (int lane = 0; lane < 64; ++lane) bits |= std::uint64_t{agrees[lane]} << lane;
@@ -68,7 +79,8 @@ ConsistencyGraph consistency_graph(std::span<const Candidate> candidates, PointV
   // The angle between rotations is twice that between their quaternions.
   const Limits limits{static_cast<float>(options.length_tolerance),
                       static_cast<float>(options.min_length * options.min_length),
-                      static_cast<float>(std::cos(options.max_angle_rad / 2))};
+                      static_cast<float>(std::cos(options.max_angle_rad / 2)),
+                      static_cast<float>(std::cos(options.max_angle_rad))};
   const std::size_t tail = candidates.size() % 64;
   parallel_blocks(candidates.size(), threads, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {

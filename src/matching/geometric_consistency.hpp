@@ -9,12 +9,13 @@
 
 namespace igsp {
 
-/// Two candidates agree when one rigid motion can explain both: equal lengths between their points, and the rotations
-/// of their frames alike. The smooth term that the paper names as future work.
+/// Two candidates agree when one rigid motion can explain both: equal lengths between their points, the rotations of
+/// their frames alike, and the difference of their points turned as those rotations turn it. The smooth term that the
+/// paper names as future work.
 struct ConsistencyOptions {
   double length_tolerance = 0;  ///< of | |a - a'| - |b - b'| | [units of the cloud]
   double min_length = 0;        ///< shorter pairs say nothing [units of the cloud]
-  double max_angle_rad = 0;     ///< between the rotations of the two pairs of frames
+  double max_angle_rad = 0;     ///< between the rotations of the two pairs of frames, and of the turned difference
 };
 
 /// Symmetric relation over candidates, one bitset a row.

@@ -24,7 +24,7 @@ SearchOutcome direct_search(const CommonFrame& frame, const Options& options, St
       loop.termination, loop.has_estimate, loop.target_from_source, std::move(loop.iterations), {}, {}};
   if (outcome.has_estimate) {
     FineSurfaces surfaces(frame.source().features, frame.target().features);
-    outcome.precision = precision_at(surfaces, outcome.target_from_source);
+    outcome.precision = precision_at(surfaces, outcome.target_from_source, options.degrees_of_freedom);
   }
   return outcome;
 }

@@ -33,7 +33,6 @@ constexpr double rival_inliers = 0.5;    // of the winner's
 constexpr double settled_quality = 1.5;  // decades, over other poses ...
 constexpr double settled_odds = 0.1;     // of chance: no wrong pose of 124 came below 0.2
 constexpr double settled_share = 1.25;   // of the agreement expected: right poses have 1.3 to 2, a square room 1.1
-constexpr std::size_t max_hopeful = 16;
 constexpr std::size_t carried = 3;  // from the coarser scale to the finer
 
 std::vector<Hypothesis> propose(CommonFrame& frame, const Options& options) {
@@ -93,21 +92,6 @@ std::vector<Rematch> match_again(CommonFrame& frame, std::span<const Hypothesis>
   return matched;
 }
 
-// At the finer scale a proposal costs four times as much as at the coarser one, which tells most of the hopeless ones.
-std::vector<Hypothesis> hopeful(CommonFrame& coarser, std::vector<Hypothesis> hypotheses, const Options& options) {
-  if (hypotheses.size() <= max_hopeful) return hypotheses;
-  std::vector<std::pair<std::size_t, std::size_t>> agreeing;  // negative, to sort by; and which
-  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-    agreeing.emplace_back(-rematch(coarser, hypotheses[i].target_from_source, options.degrees_of_freedom).agreeing, i);
-  }
-  std::ranges::sort(agreeing);
-  agreeing.resize(max_hopeful);
-  std::ranges::sort(agreeing, {}, &std::pair<std::size_t, std::size_t>::second);
-  std::vector<Hypothesis> kept;
-  for (const auto& [score, i] : agreeing) kept.push_back(hypotheses[i]);
-  return kept;
-}
-
 LoopOutcome hybrid_loop(CommonFrame& frame, const Transformation& initial, int iterations, const Options& options,
                         const std::function<void(int)>& tick = {}) {
   const LoopInput input{
@@ -133,7 +117,7 @@ void refine(const CommonFrame& frame, const Options& options, StageClock& clock,
                               {early_fine_points, fine_points, fine_radii, max_last_steps,
                                frame.target().features.voxel_size, options.degrees_of_freedom});
   }
-  outcome.precision = precision_at(surfaces, outcome.target_from_source);
+  outcome.precision = precision_at(surfaces, outcome.target_from_source, options.degrees_of_freedom);
 }
 
 // The loop at the scale that was searched, the refinement at the finer one.
@@ -180,13 +164,12 @@ bool is_settled(std::span<const Rival> ranked, double voxel_size) {
 }
 
 // Proposes, screens and ranks; together with the best that another scale found.
-std::vector<Rival> search_at(CommonFrame& scale, CommonFrame* coarser, std::span<const Rival> found,
-                             const Options& options, StageClock& clock) {
+std::vector<Rival> search_at(CommonFrame& scale, std::span<const Rival> found, const Options& options,
+                             StageClock& clock) {
   found = found.first(std::min(found.size(), carried));
   clock.start("hypotheses");
-  std::vector<Hypothesis> hypotheses = propose(scale, options);
+  const std::vector<Hypothesis> hypotheses = propose(scale, options);
   clock.start("screening");
-  if (coarser) hypotheses = hopeful(*coarser, std::move(hypotheses), options);
   const std::vector<Rematch> screened =
       distinct(match_again(scale, hypotheses, options, [&](double share) { clock.report(share); }), found,
                scale.target().features.voxel_size, options.hypotheses.max_refined);
@@ -214,14 +197,13 @@ SearchOutcome finished(std::vector<Rival> ranked, CommonFrame& scale, const Comm
 SearchOutcome hypotheses_search(CommonFrame& frame, CoarserScale& coarser, const Options& options, StageClock& clock) {
   std::vector<Rival> found;
   if (coarser.is_there()) {
-    found = search_at(coarser.frame(), nullptr, {}, options, clock);
+    found = search_at(coarser.frame(), {}, options, clock);
     // Without the refinement the pose would stay as coarse as the scale.
     if (options.refinement.enabled && is_settled(found, coarser.frame().target().features.voxel_size)) {
       return finished(std::move(found), coarser.frame(), frame, options, clock);
     }
   }
-  return finished(search_at(frame, coarser.is_there() ? &coarser.frame() : nullptr, found, options, clock), frame,
-                  frame, options, clock);
+  return finished(search_at(frame, found, options, clock), frame, frame, options, clock);
 }
 
 SearchOutcome refine_initial(CommonFrame& frame, const Transformation& initial, const Options& options,

@@ -1,6 +1,9 @@
 #include "registration/point_to_plane.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "estimation/robust_fit.hpp"
 #include "spatial/local_pca.hpp"
@@ -10,16 +13,20 @@ namespace {
 
 constexpr double min_normal_cosine = 0.7;
 constexpr std::size_t min_pairs = 30;
+constexpr double max_growth = 0.1;  // of one step
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix7 = Eigen::Matrix<double, 7, 7>;
+using Vector7 = Eigen::Matrix<double, 7, 1>;
 
-// Unknowns: a small rotation about `centre`, then a translation; both move the source.
+// Unknowns: a small rotation about `centre`, a translation, and a growth about the centre, which only fit_scale solves
+// for; all move the source.
 struct NormalEquations {
   Eigen::Vector3d centre;
-  double scale;  // of the robust loss
-  Matrix6 information = Matrix6::Zero();
-  Vector6 gradient = Vector6::Zero();
+  double loss_scale;
+  Matrix7 information = Matrix7::Zero();
+  Vector7 gradient = Vector7::Zero();
   std::size_t pairs = 0;
   double weight_sum = 0, weighted_squares = 0;
   Eigen::Vector3d weighted_places = Eigen::Vector3d::Zero();
@@ -31,9 +38,9 @@ struct NormalEquations {
     if (std::abs(cosine) < min_normal_cosine) return;
     const Eigen::Vector3d n = (q_normal + std::copysign(1.0, cosine) * p_normal).normalized();
     const double residual = n.dot(p - q);
-    const double weight = geman_mcclure_weight(residual * residual, scale * scale);
-    Vector6 jacobian;
-    jacobian << (p - centre).cross(n), n;
+    const double weight = geman_mcclure_weight(residual * residual, loss_scale * loss_scale);
+    Vector7 jacobian;
+    jacobian << (p - centre).cross(n), n, (p - centre).dot(n);
     information += weight * jacobian * jacobian.transpose();
     gradient += weight * residual * jacobian;
     weight_sum += weight;
@@ -42,25 +49,27 @@ struct NormalEquations {
     ++pairs;
   }
 
-  // Rotations about the centroid of the pairs, which does not depend on where the cloud's other points are:
-  // (p - c') x n = (p - c) x n - (c' - c) x n, so J' = T J.
+  // Rotations and growth about the centroid of the pairs, which does not depend on where the cloud's other points are:
+  // (p - c') x n = (p - c) x n - (c' - c) x n, and likewise with the dot product, so J' = T J.
   void move_centre_to_pairs() {
     if (!(weight_sum > 0)) return;
     const Eigen::Vector3d centroid = weighted_places / weight_sum, shift = centroid - centre;
-    Matrix6 moved = Matrix6::Identity();
-    moved.topRightCorner<3, 3>() << 0, shift.z(), -shift.y(), -shift.z(), 0, shift.x(), shift.y(), -shift.x(), 0;
+    Matrix7 moved = Matrix7::Identity();
+    moved.block<3, 3>(0, 3) << 0, shift.z(), -shift.y(), -shift.z(), 0, shift.x(), shift.y(), -shift.x(), 0;
+    moved.block<1, 3>(6, 3) = -shift.transpose();
     information = moved * information * moved.transpose();
     gradient = moved * gradient;
     centre = centroid;
   }
 };
 
-NormalEquations linearise(Surface& source, Surface& target, const Transformation& pose, double radius,
+// `scale`: of the source, before the pose.
+NormalEquations linearise(Surface& source, Surface& target, const Transformation& pose, double scale, double radius,
                           std::size_t max_points) {
   NormalEquations equations{pose.translation(), 0.5 * radius};
   const std::size_t stride = std::max<std::size_t>(1, source.size() / max_points);
   for (std::size_t i = 0; i < source.size(); i += stride) {
-    const Eigen::Vector3d p = pose * source.point(i);
+    const Eigen::Vector3d p = pose * (scale * source.point(i));
     const std::int64_t j = target.grid().nearest(p.cast<float>(), static_cast<float>(radius));
     if (j >= 0) equations.add(p, pose.linear() * source.normal(i), target.point(j), target.normal(j));
   }
@@ -91,6 +100,11 @@ bool is_small(const Vector6& step, double voxel_size) {
   return step.head<3>().norm() < 1e-5 && step.tail<3>().norm() < 1e-4 * voxel_size;
 }
 
+template <typename Solver>
+bool is_solvable(const Solver& solver) {
+  return solver.info() == Eigen::Success && solver.isPositive() && solver.rcond() > 1e-12;
+}
+
 }  // namespace
 
 const Eigen::Vector3d& Surface::normal(std::size_t i) {
@@ -106,12 +120,12 @@ Transformation refine_point_to_plane(Surface& source, Surface& target, const Tra
     const bool is_early = k + 1 < options.radii.size();
     const double radius = options.radii[is_early ? k : options.radii.size() - 1] * options.voxel_size;
     NormalEquations equations =
-        linearise(source, target, pose, radius, is_early ? options.early_points : options.max_points);
+        linearise(source, target, pose, 1, radius, is_early ? options.early_points : options.max_points);
     if (equations.pairs < min_pairs) break;
     if (options.degrees_of_freedom == 4) fix_tilt(equations);
-    const Eigen::LDLT<Matrix6> solver(equations.information);
-    if (solver.info() != Eigen::Success || !solver.isPositive() || solver.rcond() < 1e-12) break;
-    const Vector6 step = solver.solve(-equations.gradient);
+    const Eigen::LDLT<Matrix6> solver(equations.information.topLeftCorner<6, 6>());
+    if (!is_solvable(solver)) break;
+    const Vector6 step = solver.solve(-equations.gradient.head<6>());
     pose = motion(step, equations.centre) * pose;
     pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
     if (!is_early && is_small(step, options.voxel_size)) break;
@@ -119,11 +133,35 @@ Transformation refine_point_to_plane(Surface& source, Surface& target, const Tra
   return pose;
 }
 
+ScaleFit fit_scale(Surface& source, Surface& target, const Transformation& initial,
+                   const PointToPlaneOptions& options) {
+  ScaleFit fit{1, std::numeric_limits<double>::infinity(), initial};
+  for (const double radius : options.radii) {
+    NormalEquations equations = linearise(source, target, fit.target_from_source, fit.factor,
+                                          radius * options.voxel_size, options.max_points);
+    if (equations.pairs < min_pairs) break;
+    if (options.degrees_of_freedom == 4) fix_tilt(equations);
+    const Eigen::LDLT<Matrix7> solver(equations.information);
+    if (!is_solvable(solver)) break;
+    const Vector7 step = solver.solve(-equations.gradient);
+    const double growth = std::exp(std::clamp(step[6], -max_growth, max_growth));
+    Transformation& pose = fit.target_from_source;
+    pose.translation() = equations.centre + growth * (pose.translation() - equations.centre);
+    pose = motion(step.head<6>(), equations.centre) * pose;
+    pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
+    fit.factor *= growth;
+    const double variance = equations.weighted_squares / equations.weight_sum;
+    fit.sigma = fit.factor * std::sqrt(variance * solver.solve(Vector7::Unit(6))[6]);
+  }
+  return fit;
+}
+
 Linearisation linearise_at(Surface& source, Surface& target, const Transformation& pose, double radius,
                            std::size_t max_points) {
-  const NormalEquations equations = linearise(source, target, pose, radius, max_points);
+  const NormalEquations equations = linearise(source, target, pose, 1, radius, max_points);
   const double variance = equations.weight_sum > 0 ? equations.weighted_squares / equations.weight_sum : 0.0;
-  return {equations.centre, equations.information, equations.gradient, variance, equations.pairs};
+  return {equations.centre, equations.information.topLeftCorner<6, 6>(), equations.gradient.head<6>(), variance,
+          equations.pairs};
 }
 
 }  // namespace igsp

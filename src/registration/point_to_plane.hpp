@@ -47,6 +47,17 @@ struct PointToPlaneOptions {
 Transformation refine_point_to_plane(Surface& source, Surface& target, const Transformation& initial,
                                      const PointToPlaneOptions& options);
 
+/// How much larger the source would have to be to fit best.
+struct ScaleFit {
+  double factor = 1;
+  double sigma = 0;                   ///< of the factor, from the residuals; infinite where nothing tells
+  Transformation target_from_source;  ///< of the source after it is multiplied by the factor
+};
+
+/// Seven parameters from a pose that is nearly right: as refine_point_to_plane, and a growth of the source. `options`:
+/// the radii and max_points, one step a radius.
+ScaleFit fit_scale(Surface& source, Surface& target, const Transformation& initial, const PointToPlaneOptions& options);
+
 /// The normal equations of one step at a pose: sum of J^T w J and of J^T w r over pairs, and the variance of their
 /// residuals. Rotations about `centre` (target frame) first, then translations.
 struct Linearisation {

@@ -18,8 +18,12 @@ struct FineSurfaces {
   double voxel_size;  ///< v
 };
 
-/// Inlier RMSE, information and covariance of a pose; free directions are left empty.
-Precision precision_at(FineSurfaces& surfaces, const Transformation& target_from_source);
+/// Inlier RMSE, information, covariance and scale at a pose; free directions are left empty.
+Precision precision_at(FineSurfaces& surfaces, const Transformation& target_from_source, int degrees_of_freedom);
+
+/// Whether the surfaces at the pose say that the source is several percent too large or too small: no rigid motion puts
+/// such a cloud where it belongs.
+bool is_of_another_scale(const Precision& precision);
 
 /// Motions of 8 voxels after which the surfaces touch as much as before: what the surfaces do not fix. Candidates are
 /// the weakest eigenvectors of the normal equations at the pose. Called with one cloud twice and the identity, these

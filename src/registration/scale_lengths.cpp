@@ -23,7 +23,7 @@ void scale(CloudSummary& summary, double factor) {
 }
 
 void scale(Precision& precision, double factor) {
-  auto& [inlier_rmse, centre, information, covariance, free_directions] = precision;
+  auto& [inlier_rmse, centre, information, covariance, scale, scale_sigma, free_directions] = precision;
   inlier_rmse *= factor;
   centre *= factor;
   // Rotations have no unit; directions are relative to the size of the scene.

@@ -18,6 +18,9 @@ namespace {
 // noise.
 constexpr double certain_quality = 2.5;
 
+// Of a pose that may look right, where something else says that it is not known or not possible.
+constexpr double confidence_of_what_cannot_be = 0.1;
+
 // Q is the logarithm of the odds that a pose is right.
 double odds(double quality) {
   return std::pow(10.0, quality);
@@ -99,7 +102,7 @@ struct Judgement {
 
 double confidence_of(const Judgement& judgement) {
   const double confidence = 1.0 / (1.0 + judgement.pose.chance_odds() + judgement.rival_odds);
-  return judgement.free_directions.empty() ? confidence : std::min(confidence, 0.1);
+  return judgement.free_directions.empty() ? confidence : std::min(confidence, confidence_of_what_cannot_be);
 }
 
 Judgement judgement_of(CommonFrame& frame, const Transformation& target_from_source, std::vector<Rival> rivals) {
@@ -174,12 +177,18 @@ void judge(CommonFrame& frame, CoarserScale& coarser, const SearchOutcome& outco
   result.evidence.free_space = pose.free_space;
   result.runner_up = runner_up_of(judgement);
   result.confidence = judgement.confidence;
+  const bool other_scale = result.confidence >= 0.5 && is_of_another_scale(result.precision);
+  if (other_scale) result.confidence = std::min(result.confidence, confidence_of_what_cannot_be);
   result.registered = result.confidence >= 0.5;
 
   const bool is_free = !judgement.free_directions.empty();
   result.reason = in_words(result);
   if (is_free) result.reason += "; not fixed by the surfaces: " + free_motions(judgement.free_directions);
-  if (!result.registered && !is_free) {
+  if (other_scale) {
+    result.reason += fmt::format("; in another scale: the source fits best multiplied by {:.3f}, which no rigid motion does",
+                                 result.precision.scale);
+  }
+  if (!result.registered && !is_free && !other_scale) {
     result.reason += why_refused(judgement);
     name_what_the_target_leaves_free(frame, result);
   }

@@ -38,6 +38,12 @@ std::string cloud_line(std::string_view name, const CloudSummary& cloud) {
   return text;
 }
 
+std::string scale_line(const Result& result, double scale) {
+  const double sigma = scale * result.precision.scale_sigma;
+  const std::string spread = sigma > 0 ? fmt::format(" +- {:.2g}", sigma) : "";
+  return fmt::format("scale       {:.8g}{}: the source is multiplied by it, the matrix contains it\n", scale, spread);
+}
+
 }  // namespace
 
 std::string matrix_text(const Transformation& transformation) {
@@ -54,19 +60,25 @@ std::string matrix_text(const Transformation& transformation) {
   return fmt::format("{}\n", fmt::join(lines, "\n"));
 }
 
+Transformation with_scale(Transformation target_from_source, double scale) {
+  if (scale != 1) target_from_source.linear() *= scale;
+  return target_from_source;
+}
+
 std::string stray_text(const CloudSummary& cloud) {
   const bool one = cloud.stray.count == 1;
   return fmt::format("{} of {} points {} {:.1f} extents away and {} left out", cloud.stray.count, cloud.points,
                      one ? "lies" : "lie up to", cloud.stray.extents_away, one ? "was" : "were");
 }
 
-std::string answer_text(const Result& result, const std::vector<Diagnosis>& diagnosis, bool voxel_size_given,
-                        double seconds) {
+std::string answer_text(const Result& result, double scale, const std::vector<Diagnosis>& diagnosis,
+                        bool voxel_size_given, double seconds) {
   std::string text = fmt::format("{}: {}\n", result.registered ? "registered" : "not registered", result.reason);
   for (const Diagnosis& cause : diagnosis) text += fmt::format("diagnosis: {}\n", cause.description);
   if (result.has_estimate) {
     text += result.registered ? "target_from_source\n" : "best estimate of target_from_source, not to be relied on\n";
-    text += matrix_text(result.target_from_source);
+    text += matrix_text(with_scale(result.target_from_source, scale));
+    if (scale != 1) text += scale_line(result, scale);
     text += fmt::format("confidence  {:.3f}\n", result.confidence);
     text += fmt::format("overlap     {:.3f} (source {:.3f}, target {:.3f})\n", result.overlap(), result.overlap_source,
                         result.overlap_target);

@@ -8,14 +8,17 @@
 #include <optional>
 
 #include "align/answer.hpp"
+#include "align/scale_request.hpp"
 #include "files/cloud_input.hpp"
 #include "files/columns_flag.hpp"
+#include "files/foreign_formats.hpp"
 #include "files/moved_output.hpp"
 #include "files/output_file.hpp"
 #include "igsp/align.hpp"
 #include "igsp/diagnosis.hpp"
 #include "igsp/errors.hpp"
 #include "igsp/io.hpp"
+#include "igsp/similarity.hpp"
 #include "report/json.hpp"
 #include "report/page.hpp"
 #include "shell/commands.hpp"
@@ -35,7 +38,7 @@ struct AlignSettings {
   fs::path aligned, transformation, report, html;  // empty: not wanted
   fs::path initial;                                // empty: no guess
   ReadOptions read;
-  std::string source_viewpoint = "auto", target_viewpoint = "auto";
+  std::string source_viewpoint = "auto", target_viewpoint = "auto", scale = "1";
   std::int64_t max_points = 20'000'000;
   bool force = false, quiet = false, verbose = false, no_diagnose = false;
   std::shared_ptr<OptionFlags> option_flags;
@@ -83,12 +86,22 @@ void check_outputs(const AlignSettings& settings) {
   if (!settings.aligned.empty()) check_moved_output(settings.source, settings.aligned);
 }
 
+void check_scaled_output(const AlignSettings& settings, const ScaleRequest& scale) {
+  if (scale.automatic && !settings.initial.empty()) {
+    throw InvalidArgument("--scale auto and --initial exclude each other: a guess holds for one scale; give the factor");
+  }
+  if ((scale.automatic || scale.factor != 1) && moves_foreign(settings.source, settings.aligned)) {
+    throw InvalidArgument(fmt::format("-o {}: not written in another scale; name it .ply, which holds the points",
+                                      settings.aligned.string()));
+  }
+}
+
 std::string contradicted(const CloudInput& cloud, std::string_view option, const std::string& text) {
   return fmt::format("{}: {}={} is not used: {}; {}={}! insists", cloud.path.string(), option, text,
                      cloud.viewpoint.warning, option, text);
 }
 
-std::vector<std::string> warnings_about(const CloudInput& source, const CloudInput& target) {
+std::vector<std::string> warnings_about(const CloudInput& source, const CloudInput& target, const ScaleRequest& scale) {
   std::vector<std::string> warnings;
   for (const CloudInput* cloud : {&source, &target}) {
     if (!cloud->note.empty()) warnings.push_back(fmt::format("{}: {}", cloud->path.string(), cloud->note));
@@ -100,9 +113,9 @@ std::vector<std::string> warnings_about(const CloudInput& source, const CloudInp
   const auto extent_of = [](const CloudInput& cloud) {
     return TrimmedCloud(cloud.points, cloud.path.string()).bounds().diagonal();
   };
-  const double source_extent = extent_of(source), target_extent = extent_of(target);
+  const double source_extent = scale.factor * extent_of(source), target_extent = extent_of(target);
   const double power = std::log10(source_extent / target_extent);
-  if (std::abs(power) >= std::log10(suspicious)) {
+  if (std::abs(power) >= std::log10(suspicious) && !scale.automatic) {
     warnings.push_back(
         fmt::format("clouds in different units? Extents differ by a factor of about {:g}: source {:.4g}, target {:.4g}",
                     std::pow(10.0, std::round(std::abs(power))), source_extent, target_extent));
@@ -140,15 +153,28 @@ void write_outputs(const AlignSettings& settings, const Result& result, const Js
     return;
   }
   stop_if_interrupted();
-  if (!settings.transformation.empty()) write_transformation(settings.transformation, result.target_from_source);
+  if (!settings.transformation.empty()) {
+    write_transformation(settings.transformation, result.target_from_source, source.scale);
+  }
   stop_if_interrupted();
   if (settings.aligned.empty()) return;
   // Floats are written only where their rounding is far below what the scan resolves.
   const double tolerance = 1e-4 * result.voxel_size;
   const std::vector<std::string> notes =
-      write_moved_output(source, settings.aligned, result.target_from_source, tolerance, bar.callback());
+      write_moved_output(source, settings.aligned, with_scale(result.target_from_source, source.scale), tolerance,
+                         bar.callback());
   bar.finish();
   for (const std::string& note : notes) std::cout << note << "\n";
+}
+
+// The answer and, where it was asked for, the factor that the source is multiplied by from then on.
+Result registered_pair(CloudInput& source, const CloudInput& target, const std::optional<Transformation>& initial,
+                       const ScaleRequest& scale, const Options& options, const ProgressCallback& progress) {
+  if (initial) return align(source.scan(), target.scan(), *initial, options, progress);
+  if (!scale.automatic) return align(source.scan(), target.scan(), options, progress);
+  SimilarityResult similarity = align_similarity(source.scan(), target.scan(), options, progress);
+  scale_cloud(source, similarity.factor);
+  return std::move(similarity.result);
 }
 
 std::vector<Diagnosis> causes_of(Result& refused, const CloudInput& source, const CloudInput& target, bool search,
@@ -166,6 +192,8 @@ int run_align(const AlignSettings& settings) {
     throw InvalidArgument(fmt::format("--max-points is {}; it must be at least 1000", settings.max_points));
   }
   check_outputs(settings);
+  const ScaleRequest scale = parse_scale(settings.scale);
+  check_scaled_output(settings, scale);
   std::optional<Transformation> initial;
   const ViewpointRequest source_viewpoint = parse_viewpoint("--source-viewpoint", settings.source_viewpoint),
                          target_viewpoint = parse_viewpoint("--target-viewpoint", settings.target_viewpoint);
@@ -175,7 +203,7 @@ int run_align(const AlignSettings& settings) {
   const auto max_points = static_cast<std::size_t>(settings.max_points);
   CloudInput source = read_cloud(settings.source, max_points, "read source", progress, settings.read);
   CloudInput target = read_cloud(settings.target, max_points, "read target", progress, settings.read);
-  std::vector<std::string> warnings = warnings_about(source, target);
+  std::vector<std::string> warnings = warnings_about(source, target, scale);
   settle_viewpoint(source, source_viewpoint);
   settle_viewpoint(target, target_viewpoint);
   if (!source.viewpoint.warning.empty()) {
@@ -184,14 +212,14 @@ int run_align(const AlignSettings& settings) {
   if (!target.viewpoint.warning.empty()) {
     warnings.push_back(contradicted(target, "--target-viewpoint", settings.target_viewpoint));
   }
+  if (scale.factor != 1) scale_cloud(source, scale.factor);
   stream_large_clouds(source, target, options.scale, progress);
   const double read = now_s(), cpu_before = cpu_now_s();
-  Result result = initial ? align(source.scan(), target.scan(), *initial, options, progress)
-                          : align(source.scan(), target.scan(), options, progress);
+  Result result = registered_pair(source, target, initial, scale, options, progress);
   const double cpu_seconds = cpu_now_s() - cpu_before;
   std::vector<Diagnosis> diagnosis;
   if (!result.registered && !settings.no_diagnose) {
-    diagnosis = causes_of(result, source, target, !initial, progress);
+    diagnosis = causes_of(result, source, target, !initial && !scale.automatic, progress);
   }
   stop_if_interrupted();
   bar.finish();
@@ -201,7 +229,7 @@ int run_align(const AlignSettings& settings) {
   for (const std::string& warning : warnings) {
     if (!settings.quiet) std::cerr << "igsp: warning: " << warning << "\n";
   }
-  std::cout << answer_text(result, diagnosis, options.scale.voxel_size > 0.0, now_s() - start);
+  std::cout << answer_text(result, source.scale, diagnosis, options.scale.voxel_size > 0.0, now_s() - start);
   if (settings.verbose) std::cout << details_text(result);
   std::cout.flush();  // before the bar of what is written
   write_outputs(settings, result, align_report(result, diagnosis, source, target, cpu_seconds, warnings), source,
@@ -251,6 +279,11 @@ void add_align_command(CLI::App& app, Command& command) {
   add_columns_flag(*align, settings->read);
   add_viewpoint_flag(*align, "source", settings->source_viewpoint);
   add_viewpoint_flag(*align, "target", settings->target_viewpoint);
+  align
+      ->add_option("--scale", settings->scale,
+                   wrapped("multiply SOURCE by this factor first, or auto: find it, whatever it is, and register with "
+                           "seven degrees of freedom; default 1"))
+      ->type_name("FACTOR|auto");
   align->add_flag("--force", settings->force, "write -o and --transform also for an estimate that is not registered");
   align->add_flag("--no-diagnose", settings->no_diagnose,
                   wrapped("do not look for the cause of a refusal (mirrored or flat clouds, degrees, coarse "

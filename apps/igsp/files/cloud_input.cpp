@@ -61,6 +61,12 @@ CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points,
   return cloud;
 }
 
+void scale_cloud(CloudInput& cloud, double factor) {
+  cloud.scale *= factor;
+  for (Eigen::Vector3d& point : cloud.points) point *= factor;
+  if (cloud.viewpoint.viewpoint) *cloud.viewpoint.viewpoint *= factor;
+}
+
 void settle_viewpoint(CloudInput& cloud, const ViewpointRequest& request) {
   if (request.kind == ViewpointRequest::Kind::automatic && cloud.scans > 1) {
     cloud.viewpoint = {

@@ -21,6 +21,7 @@ struct CloudInput {
   std::size_t dropped = 0;  ///< points left out for a coordinate that is not finite
   Bounds bounds;            ///< of all points
   std::optional<Eigen::Vector3d> declared_viewpoint;  ///< what the file says
+  double scale = 1.0;                                 ///< that `points` and the viewpoint are multiplied by
   std::size_t scans = 1;                              ///< in the file
   std::string note;                                   ///< what was left out of the file, in words; mostly empty
   ViewpointFinding viewpoint;                         ///< where the scanner stood; unknown until settle_viewpoint
@@ -34,7 +35,10 @@ struct CloudInput {
 CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points, std::string_view stage,
                       const ProgressCallback& progress, const ReadOptions& options = {});
 
-/// Settles where the scanner stood, from the points in memory.
+/// Multiplies what is in memory; `bounds` and `declared_viewpoint` stay those of the file.
+void scale_cloud(CloudInput& cloud, double factor);
+
+/// Settles where the scanner stood, from the points in memory; a viewpoint that was asked for is one of the file's frame.
 void settle_viewpoint(CloudInput& cloud, const ViewpointRequest& request);
 
 /// Voxel centroids of the whole file, in the file's frame, read in chunks: memory grows with the voxels only.

@@ -58,7 +58,8 @@ int run_report(const ReportSettings& settings) {
   check_writable(settings.page);
   const Json run = read_run(settings.run);
   ProgressBar bar(true);
-  const CloudInput source = read_cloud_of(settings, run, "source", settings.source, bar.callback());
+  CloudInput source = read_cloud_of(settings, run, "source", settings.source, bar.callback());
+  scale_cloud(source, run["scale"]);
   const CloudInput target = read_cloud_of(settings, run, "target", settings.target, bar.callback());
   bar.finish();
   write_text(settings.page, report_page(run, source.points, target.points));

@@ -100,6 +100,8 @@ Json to_json(const Precision& precision) {
   return {{"centre", rows(precision.centre.transpose())[0]},
           {"information", rows(precision.information)},
           {"covariance", rows(precision.covariance)},
+          {"scale", precision.scale},
+          {"scale_sigma", precision.scale_sigma},
           {"free_directions", free_directions}};
 }
 
@@ -168,6 +170,7 @@ Json align_report(const Result& result, const std::vector<Diagnosis>& diagnosis,
   json["diagnosis"] = to_json(diagnosis);
   json["termination"] = to_string(result.termination);
   json["target_from_source"] = result.has_estimate ? to_json(result.target_from_source) : Json(nullptr);
+  json["scale"] = source.scale;
   json["confidence"] = result.confidence;
   json["overlap"] = result.overlap();
   json["overlap_source"] = result.overlap_source;

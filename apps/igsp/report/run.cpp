@@ -17,7 +17,7 @@ constexpr int max_depth = 16;  // what igsp writes has 5; printing and freeing J
 constexpr const char* pattern_text = R"({
   "version": "a text", "verdict": "a verdict", "reason": "a text", "termination": "a text",
   "diagnosis": [{"cause": "a text", "description": "a text"}],
-  "target_from_source?": "a rigid motion", "confidence": "a number",
+  "target_from_source?": "a rigid motion", "scale": "a positive number", "confidence": "a number",
   "overlap_source": "a number", "overlap_target": "a number", "rmse": "a number",
   "evidence": {"mutual_matches": "a count", "agreeing_matches": "a count", "contact_share": "a number",
                "quality": "a number", "rival_odds": "a number",
