@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -55,8 +56,16 @@ struct NetworkLink {
   Precision precision;  ///< of the pair alone
 };
 
+/// A loop of three registered links.
+struct NetworkCycle {
+  std::array<std::size_t, 3> scans{};  ///< ascending
+  double error = 0;                    ///< how far it is from closing, in sigmas of its links and what is right anyway
+  bool closes = false;                 ///< otherwise one of its links is wrong
+};
+
 /// A scan and where it lies.
 struct NetworkScan {
+  std::string name;           ///< for people; register_network leaves it empty
   std::string problem;        ///< why there is nothing to register, empty if there is
   std::size_t component = 0;  ///< index into Network::components
   Transformation world_from_scan = Transformation::Identity();
@@ -72,6 +81,7 @@ struct NetworkScan {
 struct Network {
   std::vector<NetworkScan> scans;                    ///< in the order given
   std::vector<NetworkLink> links;                    ///< all pairs that were tried
+  std::vector<NetworkCycle> cycles;                  ///< all loops of three registered links
   std::vector<std::vector<std::size_t>> components;  ///< scans, ascending; the largest component first
   double bundle_error = 0;  ///< RMS of the residuals of the links that are used [units of the cloud]
   double voxel_size = 0;    ///< [units of the cloud]

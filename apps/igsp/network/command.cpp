@@ -49,14 +49,14 @@ ScanReading reading_of(const NetworkSettings& settings) {
   return reading;
 }
 
-void write_outputs(const fs::path& folder, const NamedNetwork& named, const NetworkOptions& options,
+void write_outputs(const fs::path& folder, const Network& network, const NetworkOptions& options,
                    const std::vector<DrawnScan>& drawn) {
-  write_text(folder / "links.csv", links_csv(named));
-  write_text(folder / "network.json", report_text(network_json(named, options)));
-  write_text(folder / "network.g2o", network_g2o(named));
-  write_text(folder / "poses.tum", poses_tum(named));
-  write_text(folder / "report.html", network_page(named, options, drawn));
-  write_text(folder / "poses.csv", poses_csv(named));
+  write_text(folder / "links.csv", links_csv(network));
+  write_text(folder / "network.json", report_text(network_json(network, options)));
+  write_text(folder / "network.g2o", network_g2o(network));
+  write_text(folder / "poses.tum", poses_tum(network));
+  write_text(folder / "report.html", network_page(network, options, drawn));
+  write_text(folder / "poses.csv", poses_csv(network));
 }
 
 int exit_code(const Network& network) {
@@ -99,13 +99,12 @@ int run_network(const NetworkSettings& settings) {
     drawn[i] = drawn_scan(one, drawn.size());
     return one;
   };
-  const Network network = register_network(reading.files.size(), features, options, progress, store.pairs());
+  Network network = register_network(reading.files.size(), features, options, progress, store.pairs());
   stop_if_interrupted();
   bar.finish();
-  NamedNetwork named{network, {}};
-  for (const fs::path& file : reading.files) named.names.push_back(file.string());
-  write_outputs(settings.folder, named, options, drawn);
-  std::cout << network_summary(named);
+  for (std::size_t i = 0; i < network.scans.size(); ++i) network.scans[i].name = reading.files[i].string();
+  write_outputs(settings.folder, network, options, drawn);
+  std::cout << network_summary(network);
   return exit_code(network);
 }
 

@@ -9,6 +9,7 @@
 
 #include "files/cloud_input.hpp"
 #include "files/csv.hpp"
+#include "files/foreign_formats.hpp"
 #include "igsp/errors.hpp"
 #include "network/common_scale.hpp"
 
@@ -72,12 +73,9 @@ std::vector<fs::path> scan_files(const std::vector<fs::path>& given) {
   std::vector<fs::path> files;
   for (const fs::path& path : given) {
     std::error_code ignored;
-    if (fs::is_directory(path, ignored)) {
-      const std::vector<fs::path> inside = clouds_in(path);
-      files.insert(files.end(), inside.begin(), inside.end());
-    } else {
-      files.push_back(path);
-    }
+    const std::vector<fs::path> inside =
+        fs::is_directory(path, ignored) ? clouds_in(path) : std::vector<fs::path>{path};
+    files.insert(files.end(), inside.begin(), inside.end());
   }
   std::set<fs::path> seen;
   for (const fs::path& file : files) {
@@ -85,7 +83,12 @@ std::vector<fs::path> scan_files(const std::vector<fs::path>& given) {
       throw InvalidArgument(fmt::format("{} is given twice", file.string()));
     }
   }
-  return files;
+  std::vector<fs::path> scans;
+  for (const fs::path& file : files) {
+    const std::vector<fs::path> inside = scans_in(file);
+    scans.insert(scans.end(), inside.begin(), inside.end());
+  }
+  return scans;
 }
 
 std::map<fs::path, Eigen::Vector3d> read_viewpoints(const fs::path& path, const std::vector<fs::path>& files) {
@@ -134,11 +137,11 @@ Features read_features(const ScanReading& reading, std::size_t scan, const Optio
   const fs::path& file = reading.files[scan];
   const std::string stage = fmt::format("scan {} of {}", scan + 1, reading.files.size());
   CloudInput cloud = read_cloud(file, reading.max_points, stage, progress, reading.read);
+  const auto given = reading.viewpoints.find(file);
+  settle_viewpoint(cloud, {});
+  if (given != reading.viewpoints.end()) cloud.viewpoint.viewpoint = given->second;
   if (!cloud.whole()) cloud.points = read_centroids(cloud, options.scale.voxel_size / 4, stage, progress);
-  const auto viewpoint = reading.viewpoints.find(file);
-  Scan points(cloud.points);
-  if (viewpoint != reading.viewpoints.end()) points.viewpoint = viewpoint->second;
-  Features features = extract_features(points, options);
+  Features features = extract_features(cloud.scan(), options);
   features.cloud_points = cloud.total;
   return features;
 }

@@ -12,8 +12,8 @@
 
 namespace igsp::cli {
 
-/// Files as given; a folder stands for the point clouds in it, in the order of their names. Throws FileError for a
-/// folder without any, InvalidArgument for a file given twice.
+/// Files as given; a folder stands for the point clouds in it, in the order of their names, a file of several scans for
+/// these (see scans_in). Throws FileError for a folder without any, InvalidArgument for a file given twice.
 std::vector<std::filesystem::path> scan_files(const std::vector<std::filesystem::path>& given);
 
 /// scan,x,y,z: where scanners stood, each in its own scan's frame. A scan is named as on the command line, by its file
