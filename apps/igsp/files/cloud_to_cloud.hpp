@@ -19,7 +19,8 @@ struct CloudToCloud {
 /// Adds CLOUD, -o, --columns and --quiet, which fill `settings`; they live as long as the command.
 void add_cloud_to_cloud_flags(CLI::App& command, CloudToCloud& settings, const std::string& written);
 
-/// Throws InvalidArgument or FileError where the output is the input or cannot be made: before a long run, not after it.
+/// Throws InvalidArgument or FileError where the output is the input or cannot be made: before a long run, not after
+/// it.
 void check_cloud_to_cloud(const CloudToCloud& settings);
 
 /// Warnings of `left_out_of`, on standard error, unless --quiet.

@@ -49,8 +49,7 @@ int run_transform(const TransformSettings& settings) {
   const double tolerance = rounding_allowed(clouds, source.points);
   source.points = {};
   print_left_out(clouds, source);
-  const std::vector<std::string> notes =
-      write_moved_output(source, clouds.output, motion, tolerance, bar.callback());
+  const std::vector<std::string> notes = write_moved_output(source, clouds.output, motion, tolerance, bar.callback());
   bar.finish();
   for (const std::string& note : notes) std::cout << note << "\n";
   return exit_registered;
@@ -60,14 +59,16 @@ constexpr const char* examples =
     "Examples:\n"
     "  igsp transform scan.ply --transform T.txt -o moved.ply\n"
     "  igsp transform moved.ply --transform T.txt --inverse -o back.ply\n"
-    "Chunk by chunk, in memory that does not grow with the cloud (PCD binary_compressed is one block, which does). PLY,\n"
+    "Chunk by chunk, in memory that does not grow with the cloud (PCD binary_compressed is one block, which does). "
+    "PLY,\n"
     "PCD and text (XYZ, TXT, CSV, PTS) keep all that belongs to their points: `igsp align -o` writes the same file.\n"
     "The command of the Python package moves LAS, LAZ, E57 and PTX as well.";
 
 }  // namespace
 
 void add_transform_command(CLI::App& app, Command& command) {
-  CLI::App* transform = app.add_subcommand("transform", "a cloud moved by a transformation file, with all its properties");
+  CLI::App* transform =
+      app.add_subcommand("transform", "a cloud moved by a transformation file, with all its properties");
   const auto settings = std::make_shared<TransformSettings>();
   add_cloud_to_cloud_flags(*transform, settings->clouds,
                            "the moved cloud, with all properties of CLOUD if FILE has its format");
