@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "igsp/features.hpp"
@@ -17,6 +18,16 @@
 
 namespace igsp {
 
+/// Source and target, indices of scans.
+using ScanPair = std::pair<std::size_t, std::size_t>;
+
+/// Which pairs are tried.
+enum class PairRule {
+  all,        ///< every pair
+  automatic,  ///< the likeliest first, until every scan has enough links that loops confirm or nothing is likely
+  listed,     ///< those of NetworkOptions::listed_pairs
+};
+
 struct NetworkOptions {
   Options pair;  ///< of the features and of every pair; its voxel size, if set, is that of all scans
 
@@ -26,6 +37,9 @@ struct NetworkOptions {
 
   /// ... and at least so many agreeing matches: a bare room fits every other one like it, on few matches.
   std::size_t min_unconfirmed_matches = 30;
+
+  PairRule pairs = PairRule::all;
+  std::vector<ScanPair> listed_pairs;  ///< in any order, either scan first
 };
 
 /// What became of a pair of scans.
@@ -98,7 +112,7 @@ struct PairStore {
   std::function<void(std::size_t source, std::size_t target, const Result& result)> keep;
 };
 
-/// Many scans into one frame, without initial poses: all pairs are registered; links that loops contradict are left
+/// Many scans into one frame, without initial poses: pairs are registered; links that loops contradict are left
 /// out; the rest is balanced in a robust pose graph. All features must share one voxel size. Throws InvalidArgument
 /// (option out of range, different voxel sizes), Cancelled; scans that cannot be placed are an answer.
 Network register_network(std::span<const Features> scans, const NetworkOptions& options = {},

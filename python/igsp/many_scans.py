@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from igsp import _core
 from igsp._core import Features, Network
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from igsp.option_keywords import OptionKeywords
 
+Pairs = Literal["all", "auto"] | Iterable[tuple[int, int]]
 Viewpoints = Sequence[Viewpoint] | Mapping[str, Viewpoint]
 
 
@@ -24,6 +25,7 @@ def network(
     scans: Iterable[object] | str | os.PathLike[str],
     *,
     viewpoints: Viewpoints | None = None,
+    pairs: Pairs = "all",
     min_unconfirmed_confidence: float = 0.95,
     min_unconfirmed_matches: int = 30,
     progress: Progress = False,
@@ -36,6 +38,8 @@ def network(
         named FILE#0, FILE#1, ... Files are read one at a time, twice unless voxel_size is given.
     `viewpoints`: where scanners stood, see `align`: one a scan, or by name (as in NetworkScan.name, or the file's name
         with or without its extension); "auto" for those that are not named. Features keep theirs.
+    `pairs`: "all"; "auto", the likeliest first until every scan has enough confirmed links or nothing is likely; or pairs
+        of indices, after folders and files of several scans have become one input a scan.
     `min_unconfirmed_confidence`, `min_unconfirmed_matches`: a link in no loop joins scans only with at least these.
     `progress`, `options`: as in `align`.
 
@@ -60,7 +64,13 @@ def network(
             )
 
         result = _core.register_network(
-            len(inputs), features, keywords, min_unconfirmed_confidence, min_unconfirmed_matches, report
+            len(inputs),
+            features,
+            keywords,
+            min_unconfirmed_confidence,
+            min_unconfirmed_matches,
+            pairs if isinstance(pairs, str) else [(int(a), int(b)) for a, b in pairs],
+            report,
         )
     for scan, one in zip(result.scans, inputs, strict=True):
         scan.name = one.name

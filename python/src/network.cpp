@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
+#include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
 #include "arrays.hpp"
@@ -37,12 +39,27 @@ FeatureSource features_of(nb::handle function, std::exception_ptr& failure) {
   };
 }
 
+void choose_pairs(NetworkOptions& options, const std::variant<std::string, std::vector<ScanPair>>& pairs) {
+  if (const auto* listed = std::get_if<std::vector<ScanPair>>(&pairs)) {
+    options.pairs = PairRule::listed;
+    options.listed_pairs = *listed;
+    return;
+  }
+  const std::string& rule = std::get<std::string>(pairs);
+  if (rule != "all" && rule != "auto") {
+    throw InvalidArgument(fmt::format("pairs is {}; it must be all, auto or pairs of indices", rule));
+  }
+  options.pairs = rule == "auto" ? PairRule::automatic : PairRule::all;
+}
+
 Network run(std::size_t scans, nb::handle features, const Keywords& keywords, double min_unconfirmed_confidence,
-            std::size_t min_unconfirmed_matches, nb::handle progress) {
+            std::size_t min_unconfirmed_matches, const std::variant<std::string, std::vector<ScanPair>>& pairs,
+            nb::handle progress) {
   NetworkOptions options;
   options.pair = options_of(keywords);
   options.min_unconfirmed_confidence = min_unconfirmed_confidence;
   options.min_unconfirmed_matches = min_unconfirmed_matches;
+  choose_pairs(options, pairs);
   const ProgressCallback callback = progress_of(progress);
   std::exception_ptr failure;
   const FeatureSource source = features_of(features, failure);
@@ -182,7 +199,8 @@ void bind_network(nb::module_& module) {
                            network.components.size());
       });
   module.def("register_network", &run, nb::arg("scans"), nb::arg("features"), nb::arg("options"),
-             nb::arg("min_unconfirmed_confidence"), nb::arg("min_unconfirmed_matches"), nb::arg("progress").none());
+             nb::arg("min_unconfirmed_confidence"), nb::arg("min_unconfirmed_matches"), nb::arg("pairs"),
+             nb::arg("progress").none());
   module.def("own_voxel_size", &own_voxel_size_of, nb::arg("points").noconvert(), nb::arg("options"));
   module.def("common_voxel_size", &common_voxel_size, nb::arg("own"));
   module.def("scan_files", &scan_files_of, nb::arg("given"));

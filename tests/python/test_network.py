@@ -107,6 +107,17 @@ def test_features_and_clouds_mix(site, answer):
     assert not any(known[pair] for pair in known if 1 in pair) and known[2, 0]
 
 
+def test_which_pairs_are_tried(site, answer):
+    listed = igsp.network(site[:3], pairs=np.array([[0, 1], [2, 1]]), **FAST)
+    assert [(link.source, link.target) for link in listed.links] == [(1, 0), (2, 1)]
+    likely = igsp.network(site, pairs="auto", **FAST)
+    assert likely.components == answer.components and len(likely.links) <= len(answer.links)
+    with pytest.raises(ValueError, match="pairs is some; it must be all, auto or pairs of indices"):
+        igsp.network(site, pairs="some", **FAST)
+    with pytest.raises(ValueError, match="a pair of scans 1 and 9 is listed"):
+        igsp.network(site, pairs=[(1, 9)], **FAST)
+
+
 def test_progress_stops_and_errors_pass(site):
     stages = []
     igsp.network(site[:2], progress=lambda stage, fraction: stages.append((stage, fraction)), **FAST)

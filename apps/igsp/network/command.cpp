@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 struct NetworkSettings {
   std::vector<fs::path> scans;
   fs::path folder, viewpoints;
+  std::string pairs = "all";  // or "auto", or a file
   ReadOptions read;
   std::int64_t max_points = 20'000'000;
   NetworkOptions options;
@@ -47,6 +48,12 @@ ScanReading reading_of(const NetworkSettings& settings) {
   reading.read = settings.read;
   reading.max_points = static_cast<std::size_t>(settings.max_points);
   return reading;
+}
+
+void choose_pairs(NetworkOptions& options, const std::string& pairs, const std::vector<fs::path>& files) {
+  if (pairs == "all") return;
+  options.pairs = pairs == "auto" ? PairRule::automatic : PairRule::listed;
+  if (options.pairs == PairRule::listed) options.listed_pairs = read_pairs(pairs, files);
 }
 
 void write_outputs(const fs::path& folder, const Network& network, const NetworkOptions& options,
@@ -88,6 +95,7 @@ int run_network(const NetworkSettings& settings) {
     throw InvalidArgument(fmt::format("--max-points is {}; it must be at least 1000", settings.max_points));
   }
   const ScanReading reading = reading_of(settings);
+  choose_pairs(options, settings.pairs, reading.files);
   create_folder(settings.folder);
   ProgressBar bar(!settings.quiet);
   const ProgressCallback progress = bar.callback();
@@ -137,6 +145,12 @@ void add_network_command(CLI::App& app, Command& command) {
                    wrapped("CSV, scan,x,y,z: where scanners stood, each in its scan's own frame; the space that they "
                            "saw through is evidence against wrong links"))
       ->type_name("FILE");
+  network
+      ->add_option(
+          "--pairs", settings->pairs,
+          wrapped("which pairs are tried: all; auto, the likeliest first until every scan has enough confirmed "
+                  "links or nothing is likely; or a CSV, source,target; default all"))
+      ->type_name("all|auto|FILE");
   network
       ->add_option("--min-unconfirmed-confidence", settings->options.min_unconfirmed_confidence,
                    wrapped("a link in no loop joins scans only with at least this confidence, in [0.5, 1]; default "

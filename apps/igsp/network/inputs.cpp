@@ -51,20 +51,23 @@ double number_in(const CsvTable& table, const CsvRecord& record, std::size_t col
   return number;
 }
 
-std::size_t required_column(const CsvTable& table, std::string_view name) {
+std::size_t required_column(const CsvTable& table, std::string_view name, std::string_view all) {
   const std::optional<std::size_t> column = find_column(table, name);
-  if (!column) throw FileError(fmt::format("{}: has no column {}; scan,x,y,z are needed", table.path.string(), name));
+  if (!column) throw FileError(fmt::format("{}: has no column {}; {} are needed", table.path.string(), name, all));
   return *column;
 }
 
-std::optional<fs::path> file_named(const std::string& name, const std::vector<fs::path>& files) {
-  for (const fs::path& file : files) {
-    if (file == name) return file;
+// The scan that a field names.
+std::size_t scan_in(const CsvTable& table, const CsvRecord& record, std::size_t column,
+                    const std::vector<fs::path>& files) {
+  const std::string& name = record.fields[column];
+  auto found = std::ranges::find(files, fs::path(name));
+  if (found == files.end()) {
+    found =
+        std::ranges::find_if(files, [&](const auto& file) { return file.filename() == name || file.stem() == name; });
   }
-  for (const fs::path& file : files) {
-    if (file.filename() == name || file.stem() == name) return file;
-  }
-  return {};
+  if (found == files.end()) fail_at(table, record, column, fmt::format("\"{}\" is none of the scans given", name));
+  return found - files.begin();
 }
 
 }  // namespace
@@ -93,15 +96,26 @@ std::vector<fs::path> scan_files(const std::vector<fs::path>& given) {
 
 std::map<fs::path, Eigen::Vector3d> read_viewpoints(const fs::path& path, const std::vector<fs::path>& files) {
   const CsvTable table = read_csv(path);
-  const std::size_t scan = required_column(table, "scan"), x = required_column(table, "x"),
-                    y = required_column(table, "y"), z = required_column(table, "z");
+  const auto column = [&](std::string_view name) { return required_column(table, name, "scan,x,y,z"); };
+  const std::size_t scan = column("scan"), x = column("x"), y = column("y"), z = column("z");
   std::map<fs::path, Eigen::Vector3d> viewpoints;
   for (const CsvRecord& record : table.records) {
-    const std::optional<fs::path> file = file_named(record.fields[scan], files);
-    if (!file) fail_at(table, record, scan, fmt::format("\"{}\" is none of the scans given", record.fields[scan]));
-    viewpoints[*file] = {number_in(table, record, x), number_in(table, record, y), number_in(table, record, z)};
+    const fs::path& file = files[scan_in(table, record, scan, files)];
+    viewpoints[file] = {number_in(table, record, x), number_in(table, record, y), number_in(table, record, z)};
   }
   return viewpoints;
+}
+
+std::vector<ScanPair> read_pairs(const fs::path& path, const std::vector<fs::path>& files) {
+  const CsvTable table = read_csv(path);
+  const std::size_t source = required_column(table, "source", "source,target"),
+                    target = required_column(table, "target", "source,target");
+  std::vector<ScanPair> pairs;
+  for (const CsvRecord& record : table.records) {
+    pairs.emplace_back(scan_in(table, record, source, files), scan_in(table, record, target, files));
+    if (pairs.back().first == pairs.back().second) fail_at(table, record, target, "the scan is paired with itself");
+  }
+  return pairs;
 }
 
 FirstLook look_at_scans(const ScanReading& reading, const ScaleOptions& scale, const ProgressCallback& progress) {

@@ -8,6 +8,7 @@
 
 #include "igsp/features.hpp"
 #include "igsp/io.hpp"
+#include "igsp/network.hpp"
 #include "igsp/progress.hpp"
 
 namespace igsp::cli {
@@ -20,6 +21,9 @@ std::vector<std::filesystem::path> scan_files(const std::vector<std::filesystem:
 /// name or by that without the extension. Throws FileError (also for a scan that is none of `files`).
 std::map<std::filesystem::path, Eigen::Vector3d> read_viewpoints(const std::filesystem::path& path,
                                                                  const std::vector<std::filesystem::path>& files);
+
+/// source,target: pairs of scans by their names, as above; either first. Throws as read_viewpoints.
+std::vector<ScanPair> read_pairs(const std::filesystem::path& path, const std::vector<std::filesystem::path>& files);
 
 /// How the scans of a network are read.
 struct ScanReading {

@@ -69,8 +69,8 @@ std::string text_of(const ScanReading& reading, std::size_t scan) {
 
 }  // namespace
 
-NetworkStore::NetworkStore(fs::path folder, const ScanReading& reading, const Options& options)
-    : folder_(std::move(folder)), reading_(reading), options_(options), keys_(reading.files.size()) {
+NetworkStore::NetworkStore(const fs::path& folder, const ScanReading& reading, const Options& options)
+    : folder_(folder / method_number), reading_(reading), options_(options), keys_(reading.files.size()) {
   make_folder(folder_ / "features");
   make_folder(folder_ / "pairs");
   options_text_ = fmt::format("{} {}", version, to_json(what_matters(options_)).dump());
