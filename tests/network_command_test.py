@@ -1,6 +1,7 @@
 """igsp network as a user meets it. usage: network_command_test.py IGSP [unittest arguments]"""
 import csv
 import json
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -102,7 +103,11 @@ class NetworkCommand(unittest.TestCase):
         self.check_poses(poses[:2] + poses[4:])
 
     def kept(self, kind):
-        return {path.name: path.stat().st_mtime_ns for path in (self.folder / "survey/cache" / kind).iterdir()}
+        return {path.name: path.stat().st_mtime_ns for path in (self.cache() / kind).iterdir()}
+
+    def cache(self):
+        (folder,) = (self.folder / "survey/cache").iterdir()
+        return folder
 
     def outputs(self, folder="survey"):
         return {path.name: path.read_bytes() for path in (self.folder / folder).iterdir() if path.is_file()}
@@ -112,14 +117,49 @@ class NetworkCommand(unittest.TestCase):
         whole, features, pairs = self.outputs(), self.kept("features"), self.kept("pairs")
         self.assertEqual((len(features), len(pairs)), (4, 6))
         for name in sorted(pairs)[:3]:
-            (self.folder / "survey/cache/pairs" / name).unlink()
-        damaged = self.folder / "survey/cache/features" / sorted(features)[0]
+            (self.cache() / "pairs" / name).unlink()
+        damaged = self.cache() / "features" / sorted(features)[0]
         damaged.write_bytes(damaged.read_bytes()[:1000])
         self.network(*self.scans, "-o", "survey")
         self.assertEqual(self.outputs(), whole)
         again = self.kept("pairs")
         self.assertEqual(sum(again[name] == pairs[name] for name in pairs), 3)
         self.assertEqual(sum(self.kept("features")[name] == features[name] for name in features), 3)
+
+    def test_answers_of_another_method_are_not_taken(self):
+        self.network(*self.scans[:2], "-o", "survey")
+        ours = self.cache()
+        self.assertRegex(ours.name, "^[0-9a-f]{12}$")
+        ours.rename(ours.parent / "0123456789ab")
+        other = {path: path.stat().st_mtime_ns for path in ours.parent.rglob("*")}
+        self.network(*self.scans[:2], "-o", "survey")
+        self.assertEqual(len(list((ours / "features").iterdir())), 2)
+        self.assertEqual(len(list((ours / "pairs").iterdir())), 1)
+        self.assertEqual({path: path.stat().st_mtime_ns for path in other}, other)
+
+    def test_the_method_has_another_number_when_its_sources_change(self):
+        root = Path(__file__).resolve().parent.parent
+
+        def number(folder):
+            output = self.folder / "number.cpp"
+            subprocess.run(["cmake", f"-DSOURCE_DIR={folder}", f"-DOUTPUT={output}", "-P",
+                            str(root / "cmake/method_number.cmake")], check=True)
+            return output.read_text()
+
+        for part in ("src", "apps", "python/igsp/formats"):
+            shutil.copytree(root / part, self.folder / part)
+        first = number(self.folder)
+        self.assertEqual(first, number(root))
+        for name, changes in [("src/registration/verdict.cpp", True), ("src/features/bsc.hpp", True),
+                              ("apps/igsp/files/cloud_input.cpp", True), ("src/features/bsc_test.cpp", False),
+                              ("src/network/decide.cpp", False)]:
+            source = self.folder / name
+            text = source.read_text()
+            source.write_text(text + "// changed\n")
+            self.assertEqual(number(self.folder) != first, changes, name)
+            source.write_text(text)
+        (self.folder / "src/registration/new_stage.cpp").write_text("")
+        self.assertNotEqual(number(self.folder), first)
 
     def test_scan_added_later_is_only_paired_with_the_others(self):
         self.network(*self.scans[:3], "-o", "survey")
@@ -149,6 +189,14 @@ class NetworkCommand(unittest.TestCase):
         self.assertEqual([row["scan"] for row in poses], [str(path) for path in self.scans])
         self.check_poses(poses)
 
+    def test_which_pairs_are_tried(self):
+        (self.folder / "pairs.csv").write_text("source,target\nstation_0.ply,station_1\nstation_2,station_1\n")
+        self.network(*self.scans[:3], "-o", "survey", "--pairs", "pairs.csv")
+        self.assertEqual([(row["source"][-5:], row["target"][-5:]) for row in self.rows("links.csv")],
+                         [("1.ply", "0.ply"), ("2.ply", "1.ply")])
+        self.network(*self.scans, "-o", "survey", "--pairs", "auto")
+        self.check_poses(self.rows("poses.csv"))
+
     def refuses(self, *arguments, code, saying):
         run = self.network(*arguments, code=code)
         self.assertIn(saying, run.stderr)
@@ -164,6 +212,9 @@ class NetworkCommand(unittest.TestCase):
                      saying='v.csv: line 2, column 1 (scan): "other" is none of the scans given')
         (self.folder / "v.csv").write_text("scan,x,y\nother,0,0\n")
         self.refuses(*self.scans, "-o", "survey", "--viewpoints", "v.csv", code=3, saying="has no column z")
+        self.refuses(*self.scans, "-o", "survey", "--pairs", "automatic", code=3, saying="automatic")
+        (self.folder / "p.csv").write_text("source,target\nstation_0,station_0\n")
+        self.refuses(*self.scans, "-o", "survey", "--pairs", "p.csv", code=3, saying="the scan is paired with itself")
         self.refuses(*self.scans, "-o", "survey", "--min-unconfirmed-confidence", "2", code=2,
                      saying="min_unconfirmed_confidence is 2")
 

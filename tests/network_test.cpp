@@ -125,6 +125,38 @@ TEST(Network, SameBitsForAnyNumberOfThreads) {
   }
 }
 
+TEST(Network, LikelyPairsPlaceTheSameScansWithFewerTries) {
+  const auto site = park(3, 10);
+  const std::vector<Scan> scans = views(site);
+  NetworkOptions options = fast_options();
+  options.pairs = PairRule::automatic;
+  const Network network = register_network(std::span<const Scan>(scans), options);
+  ASSERT_EQ(network.components.size(), 1u);
+  expect_right(network, network.components[0], site, 0);
+  EXPECT_LT(network.links.size(), 45u);
+  for (std::size_t i = 1; i < network.links.size(); ++i) {
+    const NetworkLink &before = network.links[i - 1], &link = network.links[i];
+    EXPECT_LT(ScanPair(before.source, before.target), ScanPair(link.source, link.target));
+  }
+}
+
+TEST(Network, OnlyListedPairsAreTried) {
+  const auto site = park(3, 3);
+  const std::vector<Scan> scans = views(site);
+  NetworkOptions options = fast_options();
+  options.pairs = PairRule::listed;
+  options.listed_pairs = {{2, 1}, {0, 2}, {1, 2}};
+  const Network network = register_network(std::span<const Scan>(scans), options);
+  ASSERT_EQ(network.links.size(), 2u);
+  EXPECT_EQ(network.links[0].source, 2u);
+  EXPECT_EQ(network.links[0].target, 0u);
+  EXPECT_EQ(network.links[1].target, 1u);
+  for (const ScanPair& wrong : {ScanPair{1, 1}, ScanPair{0, 3}}) {
+    options.listed_pairs = {wrong};
+    EXPECT_THROW(register_network(std::span<const Scan>(scans), options), InvalidArgument);
+  }
+}
+
 TEST(Network, SourceThatThrowsIsThatScansProblem) {
   const auto site = park(3, 3);
   const NetworkOptions options = fast_options();

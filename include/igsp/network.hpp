@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "igsp/features.hpp"
@@ -16,6 +18,16 @@
 
 namespace igsp {
 
+/// Source and target, indices of scans.
+using ScanPair = std::pair<std::size_t, std::size_t>;
+
+/// Which pairs are tried.
+enum class PairRule {
+  all,        ///< every pair
+  automatic,  ///< the likeliest first, until every scan has enough links that loops confirm or nothing is likely
+  listed,     ///< those of NetworkOptions::listed_pairs
+};
+
 struct NetworkOptions {
   Options pair;  ///< of the features and of every pair; its voxel size, if set, is that of all scans
 
@@ -25,6 +37,9 @@ struct NetworkOptions {
 
   /// ... and at least so many agreeing matches: a bare room fits every other one like it, on few matches.
   std::size_t min_unconfirmed_matches = 30;
+
+  PairRule pairs = PairRule::all;
+  std::vector<ScanPair> listed_pairs;  ///< in any order, either scan first
 };
 
 /// What became of a pair of scans.
@@ -55,8 +70,16 @@ struct NetworkLink {
   Precision precision;  ///< of the pair alone
 };
 
+/// A loop of three registered links.
+struct NetworkCycle {
+  std::array<std::size_t, 3> scans{};  ///< ascending
+  double error = 0;                    ///< how far it is from closing, in sigmas of its links and what is right anyway
+  bool closes = false;                 ///< otherwise one of its links is wrong
+};
+
 /// A scan and where it lies.
 struct NetworkScan {
+  std::string name;           ///< for people; register_network leaves it empty
   std::string problem;        ///< why there is nothing to register, empty if there is
   std::size_t component = 0;  ///< index into Network::components
   Transformation world_from_scan = Transformation::Identity();
@@ -72,6 +95,7 @@ struct NetworkScan {
 struct Network {
   std::vector<NetworkScan> scans;                    ///< in the order given
   std::vector<NetworkLink> links;                    ///< all pairs that were tried
+  std::vector<NetworkCycle> cycles;                  ///< all loops of three registered links
   std::vector<std::vector<std::size_t>> components;  ///< scans, ascending; the largest component first
   double bundle_error = 0;  ///< RMS of the residuals of the links that are used [units of the cloud]
   double voxel_size = 0;    ///< [units of the cloud]
@@ -88,7 +112,7 @@ struct PairStore {
   std::function<void(std::size_t source, std::size_t target, const Result& result)> keep;
 };
 
-/// Many scans into one frame, without initial poses: all pairs are registered; links that loops contradict are left
+/// Many scans into one frame, without initial poses: pairs are registered; links that loops contradict are left
 /// out; the rest is balanced in a robust pose graph. All features must share one voxel size. Throws InvalidArgument
 /// (option out of range, different voxel sizes), Cancelled; scans that cannot be placed are an answer.
 Network register_network(std::span<const Features> scans, const NetworkOptions& options = {},

@@ -14,6 +14,10 @@ from igsp._core import (
     FreeDirection,
     IterationRecord,
     MatchQuality,
+    Network,
+    NetworkCycle,
+    NetworkLink,
+    NetworkScan,
     PoseError,
     Precision,
     Result,
@@ -35,6 +39,7 @@ from igsp.files import (
     write_result,
     write_transformation,
 )
+from igsp.many_scans import network
 from igsp.registration import align, diagnose, extract_features, options
 from igsp.viewpoints import find_viewpoint
 
@@ -47,6 +52,10 @@ __all__ = [
     "FreeDirection",
     "IterationRecord",
     "MatchQuality",
+    "Network",
+    "NetworkCycle",
+    "NetworkLink",
+    "NetworkScan",
     "NotRegistered",
     "PoseError",
     "Precision",
@@ -60,6 +69,7 @@ __all__ = [
     "extract_features",
     "find_viewpoint",
     "match_quality",
+    "network",
     "options",
     "pose_error",
     "read_features",

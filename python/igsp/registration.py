@@ -48,9 +48,9 @@ def align(
     out of range), TypeError (unknown option), OSError (a file), igsp.Cancelled. The interpreter lock is released, and
     Ctrl-C stops the run.
     """
-    keywords = _plain(options)
+    keywords = plain_options(options)
     guess = None if initial is None else matrix_array(initial, "initial")
-    with _progress_function(progress) as report:
+    with progress_function(progress) as report:
         if not isinstance(source, Features) and not isinstance(target, Features):
             scans = _load_both(source, target, source_viewpoint, target_viewpoint)
             return _core.align_points(*scans, guess, keywords, report)
@@ -81,7 +81,7 @@ def diagnose(
 
     Most likely first; empty if nothing was found, as for clouds that simply do not overlap, and for a registered pair.
     """
-    with _progress_function(progress) as report:
+    with progress_function(progress) as report:
         scans = _load_both(source, target, source_viewpoint, target_viewpoint)
         return _core.diagnose(*scans, refused, search, report)
 
@@ -94,16 +94,16 @@ def extract_features(
     Clouds that shall meet must be extracted with the same options; `align` of a cloud and of Features takes the voxel
     size from the Features.
     """
-    with _progress_function(progress) as report:
-        return _extract(cloud, "cloud", viewpoint, "viewpoint", _plain(options), report)
+    with progress_function(progress) as report:
+        return _extract(cloud, "cloud", viewpoint, "viewpoint", plain_options(options), report)
 
 
 def options(**options: Unpack[OptionKeywords]) -> dict[str, bool | int | float | str]:
     """All options with their values, after the preset and the given ones; `align(..., **options)` takes them."""
-    return _core.resolve_options(_plain(options))
+    return _core.resolve_options(plain_options(options))
 
 
-def _plain(options: OptionKeywords) -> dict[str, Any]:
+def plain_options(options: OptionKeywords) -> dict[str, Any]:
     """Paths as strings, NumPy's numbers as Python's."""
 
     def plain(value: Any) -> Any:
@@ -158,7 +158,7 @@ def _extract(
     return _core.extract_features(loaded.points, settle(loaded, viewpoint, keyword), keywords, report)
 
 
-def _progress_function(progress: Progress) -> contextlib.AbstractContextManager[ProgressFunction | None]:
+def progress_function(progress: Progress) -> contextlib.AbstractContextManager[ProgressFunction | None]:
     if callable(progress):
         return contextlib.nullcontext(progress)
     return ProgressBar() if progress else contextlib.nullcontext(None)

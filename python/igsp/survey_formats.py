@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 
-from igsp.formats import is_supported, is_written, read_chunks, write_aligned
+from igsp.formats import is_supported, is_written, read_chunks, split_name, write_aligned
+from igsp.formats import scan_names as scans
 
-__all__ = ["is_supported", "moves", "read_chunks", "write_aligned"]
+__all__ = ["is_supported", "moves", "read_chunks", "scans", "write_aligned"]
 
 
 def moves(source: str, output: str) -> bool:
@@ -15,5 +16,5 @@ def moves(source: str, output: str) -> bool:
 
 
 def _kind(path: str) -> str:
-    extension = os.path.splitext(path)[1].lower()
+    extension = os.path.splitext(split_name(path)[0])[1].lower()
     return ".las" if extension == ".laz" else extension

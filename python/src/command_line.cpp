@@ -71,7 +71,7 @@ cli::ForeignCloud open(nb::handle formats, const fs::path& path) {
   return in_python([&] {
     const nb::object iterator = formats.attr("read_chunks")(path.string());
     const std::shared_ptr<Chunks> chunks(new Chunks{iterator, {}}, delete_in_python);
-    std::string name = path.extension().string().substr(1);
+    std::string name = cli::file_of_scan(path).extension().string().substr(1);
     for (char& letter : name) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
     return cli::ForeignCloud{
         .format = name,
@@ -93,6 +93,10 @@ cli::ForeignFormats foreign_formats(nb::handle formats) {
             return in_python([&] { return nb::cast<bool>(formats.attr("is_supported")(path.string())); });
           },
       .open = [formats](const fs::path& path) { return open(formats, path); },
+      .scans =
+          [formats](const fs::path& path) {
+            return in_python([&] { return nb::cast<std::vector<std::string>>(formats.attr("scans")(path.string())); });
+          },
       .moves =
           [formats](const fs::path& source, const fs::path& output) {
             return in_python([&] { return nb::cast<bool>(formats.attr("moves")(source.string(), output.string())); });

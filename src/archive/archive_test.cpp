@@ -34,6 +34,9 @@ void fill(Random& random, Termination& value) {
 void fill(Random& random, Cause& value) {
   value = static_cast<Cause>(random.bits() % 5);
 }
+void fill(Random& random, LinkState& value) {
+  value = static_cast<LinkState>(random.bits() % 4);
+}
 void fill(Random& random, std::string& value) {
   value = "text \0 and " + std::to_string(random.bits());
 }
@@ -222,6 +225,23 @@ TEST(ArchiveReasons, OfResultsThatContradictThemselves) {
   result = filled<Result>(9);
   result.options.descriptor.radius = -1;
   EXPECT_NE(reason<Result>(pack(result)).find("radius"), std::string::npos);
+}
+
+TEST(ArchiveReasons, OfNetworksThatContradictThemselves) {
+  const auto reason_of = [](auto change) {
+    auto network = filled<Network>(9);
+    change(network);
+    return reason<Network>(pack(network));
+  };
+  EXPECT_EQ(reason_of([](Network&) {}), "none");
+  const std::string contradiction = "it contradicts itself: ";
+  EXPECT_EQ(reason_of([](Network& n) { n.scans[1].component = 8; }),
+            contradiction + "a scan of a component that is not there");
+  EXPECT_EQ(reason_of([](Network& n) { n.components[2].clear(); }),
+            contradiction + "a component without scans, or of one that is not there");
+  EXPECT_EQ(reason_of([](Network& n) { n.components[2][3] = 8; }),
+            contradiction + "a component without scans, or of one that is not there");
+  EXPECT_EQ(reason_of([](Network& n) { n.links[2].target = 8; }), contradiction + "a link of a scan that is not there");
 }
 
 /// The bytes themselves, so that a machine of another byte order cannot agree with itself and nobody else.

@@ -63,6 +63,11 @@ struct Listed<Cause> {
   static constexpr std::string_view name = "cause";
   static constexpr Cause last = Cause::scale;
 };
+template <>
+struct Listed<LinkState> {
+  static constexpr std::string_view name = "state of a link";
+  static constexpr LinkState last = LinkState::not_registered;
+};
 
 template <typename T>
 requires std::is_enum_v<T>

@@ -63,4 +63,15 @@ void require_consistent(const Result& result) {
   }
 }
 
+void require_consistent(const Network& network) {
+  const auto is_scan = [&](std::size_t i) { return i < network.scans.size(); };
+  require(std::ranges::all_of(network.scans, [&](auto& scan) { return scan.component < network.components.size(); }),
+          "a scan of a component that is not there");
+  require(std::ranges::all_of(network.components,
+                              [&](auto& scans) { return !scans.empty() && std::ranges::all_of(scans, is_scan); }),
+          "a component without scans, or of one that is not there");
+  require(std::ranges::all_of(network.links, [&](auto& link) { return is_scan(link.source) && is_scan(link.target); }),
+          "a link of a scan that is not there");
+}
+
 }  // namespace igsp::archive

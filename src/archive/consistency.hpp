@@ -1,6 +1,7 @@
 #pragma once
 
 #include "igsp/features.hpp"
+#include "igsp/network.hpp"
 #include "igsp/result.hpp"
 
 namespace igsp::archive {
@@ -9,6 +10,7 @@ namespace igsp::archive {
 // they index, coordinates that the search structures hold. Throw Fault.
 void require_consistent(const Features& features);
 void require_consistent(const Result& result);
+void require_consistent(const Network& network);
 
 /// Others are only numbers.
 template <typename T>

@@ -8,6 +8,7 @@
 #include "igsp/diagnosis.hpp"
 #include "igsp/evaluation.hpp"
 #include "igsp/features.hpp"
+#include "igsp/network.hpp"
 #include "igsp/result.hpp"
 #include "igsp/simulation.hpp"
 #include "igsp/viewpoint.hpp"
@@ -229,9 +230,69 @@ struct Layout<SimulatedScan> {
   };
 };
 
-using AllStructs = std::tuple<StrayPoints, Features, KeypointMatch, IterationRecord, CloudSummary, FreeDirection,
-                              Precision, FreeSpaceViolation, FreeSpace, Evidence, RunnerUp, Result, Diagnosis,
-                              PoseError, MatchQuality, SimulatedScan, ViewpointFinding>;
+template <>
+struct Layout<NetworkScan> {
+  static constexpr std::string_view name = "NetworkScan";
+  static constexpr std::tuple fields = {
+      Field{"name", &NetworkScan::name},
+      Field{"problem", &NetworkScan::problem},
+      Field{"component", &NetworkScan::component},
+      Field{"world_from_scan", &NetworkScan::world_from_scan},
+      Field{"covariance", &NetworkScan::covariance},
+      Field{"centre", &NetworkScan::centre},
+      Field{"points", &NetworkScan::points},
+  };
+};
+
+template <>
+struct Layout<NetworkLink> {
+  static constexpr std::string_view name = "NetworkLink";
+  static constexpr std::tuple fields = {
+      Field{"source", &NetworkLink::source},
+      Field{"target", &NetworkLink::target},
+      Field{"state", &NetworkLink::state},
+      Field{"reason", &NetworkLink::reason},
+      Field{"target_from_source", &NetworkLink::target_from_source},
+      Field{"confidence", &NetworkLink::confidence},
+      Field{"overlap", &NetworkLink::overlap},
+      Field{"rmse", &NetworkLink::rmse},
+      Field{"mutual_matches", &NetworkLink::mutual_matches},
+      Field{"agreeing_matches", &NetworkLink::agreeing_matches},
+      Field{"violation", &NetworkLink::violation},
+      Field{"in_view", &NetworkLink::in_view},
+      Field{"consistent_triangles", &NetworkLink::consistent_triangles},
+      Field{"residual", &NetworkLink::residual},
+      Field{"precision", &NetworkLink::precision},
+  };
+};
+
+template <>
+struct Layout<NetworkCycle> {
+  static constexpr std::string_view name = "NetworkCycle";
+  static constexpr std::tuple fields = {
+      Field{"scans", &NetworkCycle::scans},
+      Field{"error", &NetworkCycle::error},
+      Field{"closes", &NetworkCycle::closes},
+  };
+};
+
+template <>
+struct Layout<Network> {
+  static constexpr std::string_view name = "Network";
+  static constexpr std::tuple fields = {
+      Field{"scans", &Network::scans},
+      Field{"links", &Network::links},
+      Field{"cycles", &Network::cycles},
+      Field{"components", &Network::components},
+      Field{"bundle_error", &Network::bundle_error},
+      Field{"voxel_size", &Network::voxel_size},
+  };
+};
+
+using AllStructs =
+    std::tuple<StrayPoints, Features, KeypointMatch, IterationRecord, CloudSummary, FreeDirection, Precision,
+               FreeSpaceViolation, FreeSpace, Evidence, RunnerUp, Result, Diagnosis, PoseError, MatchQuality,
+               SimulatedScan, ViewpointFinding, NetworkScan, NetworkLink, NetworkCycle, Network>;
 
 template <typename T>
 concept HasLayout = requires {

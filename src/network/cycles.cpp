@@ -1,7 +1,6 @@
 #include "network/cycles.hpp"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <span>
 
@@ -21,14 +20,14 @@ LinkStep towards(const LinkGraph& graph, std::size_t link, std::size_t scan) {
 
 }  // namespace
 
-std::vector<CycleSupport> cycle_support(const LinkGraph& graph) {
+std::vector<Triangle> triangles(const LinkGraph& graph) {
   // Links of a scan to later ones, so that every triangle is met once, at its first scan.
   std::vector<std::map<std::size_t, std::size_t>> later(graph.centres.size());
   for (std::size_t l = 0; l < graph.links.size(); ++l) {
     const auto [first, second] = std::minmax(graph.links[l].source, graph.links[l].target);
     later[first].emplace(second, l);
   }
-  std::vector<CycleSupport> found(graph.links.size());
+  std::vector<Triangle> found;
   for (std::size_t a = 0; a < later.size(); ++a) {
     for (const auto& [b, ab] : later[a]) {
       for (const auto& [c, bc] : later[b]) {
@@ -37,18 +36,24 @@ std::vector<CycleSupport> cycle_support(const LinkGraph& graph) {
         const std::array<LinkStep, 3> loop = {towards(graph, ab, b), towards(graph, bc, c),
                                               towards(graph, ac->second, a)};
         if (proves_nothing(graph, loop)) continue;
-        const double error = loop_error(graph, loop);
-        const bool closes = error < max_loop_error;
-        // Right links agree far better than they must; what just closes may have done so by chance.
-        const double trust = geman_mcclure_weight(error, max_loop_error / 9);
-        for (int i = 0; i < 3; ++i) {
-          CycleSupport& entry = found[loop[i].link];
-          ++(closes ? entry.triangles : entry.open);
-          if (closes) {
-            entry.support += trust * std::min(graph.links[loop[(i + 1) % 3].link].weight,
-                                              graph.links[loop[(i + 2) % 3].link].weight);
-          }
-        }
+        found.push_back({{a, b, c}, {ab, bc, ac->second}, loop_error(graph, loop)});
+      }
+    }
+  }
+  return found;
+}
+
+std::vector<CycleSupport> cycle_support(const LinkGraph& graph, const std::vector<Triangle>& triangles) {
+  std::vector<CycleSupport> found(graph.links.size());
+  for (const Triangle& triangle : triangles) {
+    // Right links agree far better than they must; what just closes may have done so by chance.
+    const double trust = geman_mcclure_weight(triangle.error, max_loop_error / 9);
+    for (int i = 0; i < 3; ++i) {
+      CycleSupport& entry = found[triangle.links[i]];
+      ++(triangle.closes() ? entry.triangles : entry.open);
+      if (triangle.closes()) {
+        entry.support += trust * std::min(graph.links[triangle.links[(i + 1) % 3]].weight,
+                                          graph.links[triangle.links[(i + 2) % 3]].weight);
       }
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "network/link_graph.hpp"
@@ -13,7 +14,18 @@ struct CycleSupport {
   double support = 0;         ///< sum of the weaker other link's weight, for a triangle that closes exactly
 };
 
+/// A loop of three links, none of it proven by copies of one room alone.
+struct Triangle {
+  std::array<std::size_t, 3> scans;  ///< ascending
+  std::array<std::size_t, 3> links;
+  double error;  ///< squared, see loop_error
+  bool closes() const { return error < max_loop_error; }
+};
+
+/// All of them, by their scans.
+std::vector<Triangle> triangles(const LinkGraph& graph);
+
 /// One entry per link.
-std::vector<CycleSupport> cycle_support(const LinkGraph& graph);
+std::vector<CycleSupport> cycle_support(const LinkGraph& graph, const std::vector<Triangle>& triangles);
 
 }  // namespace igsp

@@ -115,7 +115,9 @@ void name_states(Network& network, const MeasuredGraph& measured, const Balanced
 
 void decide(Network& network, std::span<const ScanShape> shapes, const NetworkOptions& options) {
   const MeasuredGraph measured = measured_graph(network.links, shapes, network.voxel_size, options);
-  const std::vector<CycleSupport> support = cycle_support(measured.graph);
+  const std::vector<Triangle> loops = triangles(measured.graph);
+  for (const Triangle& loop : loops) network.cycles.push_back({loop.scans, std::sqrt(loop.error), loop.closes()});
+  const std::vector<CycleSupport> support = cycle_support(measured.graph, loops);
   const std::vector<std::size_t> forest = spanning_forest(measured.graph, support);
   const BalancedPoses poses = balance_poses(measured.graph, forest, anchors_of(measured.graph, forest));
   name_states(network, measured, poses, support, options);

@@ -77,7 +77,7 @@ TEST(CycleSupport, TellsTrianglesThatCloseFromThoseThatDoNot) {
   graph.links = {link_between(truth, 0, 1), link_between(truth, 1, 2), link_between(truth, 2, 0),
                  link_between(truth, 3, 1), link_between(truth, 3, 2, wrong)};
   graph.links[1].weight = 1;
-  const auto support = cycle_support(graph);
+  const auto support = cycle_support(graph, triangles(graph));
   EXPECT_EQ(support[0].triangles, 1u);
   EXPECT_EQ(support[0].open, 0u);
   EXPECT_EQ(support[0].support, 1);  // the weaker of the other two
@@ -93,7 +93,7 @@ TEST(CycleSupport, CountsLessWhereATriangleJustCloses) {
   Vector6 off = Vector6::Zero();
   off[4] = 2;
   graph.links = {link_between(truth, 0, 1, off), link_between(truth, 1, 2), link_between(truth, 2, 0)};
-  const auto support = cycle_support(graph);
+  const auto support = cycle_support(graph, triangles(graph));
   EXPECT_EQ(support[0].triangles, 1u);
   EXPECT_LT(support[0].support, 0.5 * graph.links[1].weight);
   EXPECT_GT(support[0].support, 0);

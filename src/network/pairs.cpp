@@ -1,9 +1,13 @@
 #include "network/pairs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <set>
 
 #include "core/parallel.hpp"
 #include "igsp/align.hpp"
+#include "igsp/errors.hpp"
 
 namespace igsp {
 namespace {
@@ -54,6 +58,18 @@ std::vector<ScanPair> all_pairs(const std::vector<NetworkScan>& scans) {
     }
   }
   return pairs;
+}
+
+std::vector<ScanPair> listed_pairs(const std::vector<NetworkScan>& scans, std::span<const ScanPair> given) {
+  std::set<ScanPair> pairs;
+  for (const auto& [a, b] : given) {
+    if (a >= scans.size() || b >= scans.size() || a == b) {
+      throw InvalidArgument(fmt::format("a pair of scans {} and {} is listed; expected two different ones of 0 to {}",
+                                        a, b, scans.size() - 1));
+    }
+    if (scans[a].problem.empty() && scans[b].problem.empty()) pairs.emplace(std::max(a, b), std::min(a, b));
+  }
+  return {pairs.begin(), pairs.end()};
 }
 
 std::vector<NetworkLink> register_pairs(std::span<const ScanPair> pairs, std::span<const Features* const> features,

@@ -2,17 +2,18 @@
 
 #include <functional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "igsp/network.hpp"
 
 namespace igsp {
 
-using ScanPair = std::pair<std::size_t, std::size_t>;  ///< source, target
-
 /// Every pair of usable scans, the earlier one as target.
 std::vector<ScanPair> all_pairs(const std::vector<NetworkScan>& scans);
+
+/// Those given that are of usable scans, each once, as all_pairs has them. Throws InvalidArgument for a scan that is
+/// not there or paired with itself.
+std::vector<ScanPair> listed_pairs(const std::vector<NetworkScan>& scans, std::span<const ScanPair> given);
 
 /// Registers pairs, several at a time, each on one thread. `features` by scan; only those of the pairs are looked at.
 /// What the store has is taken from it, the rest is kept in it. `report` gets the share done and may throw to stop.

@@ -7,6 +7,7 @@
 #include "network/common_scale.hpp"
 #include "network/decide.hpp"
 #include "network/joint_refinement.hpp"
+#include "network/likely_pairs.hpp"
 #include "network/pairs.hpp"
 
 namespace igsp {
@@ -86,8 +87,14 @@ Network register_network(std::size_t scans, const FeatureSource& features, const
     views.push_back(&one);
     shapes.push_back(shape_of(one));
   }
-  network.links = register_pairs(all_pairs(network.scans), views, options.pair, store,
-                                 [&](double done) { report(progress, "pairs", done); });
+  const auto report_pairs = [&](double done) { report(progress, "pairs", done); };
+  if (options.pairs == PairRule::automatic) {
+    network.links = register_likely_pairs(network, views, shapes, options, store, report_pairs);
+  } else {
+    const bool all = options.pairs == PairRule::all;
+    network.links = register_pairs(all ? all_pairs(network.scans) : listed_pairs(network.scans, options.listed_pairs),
+                                   views, options.pair, store, report_pairs);
+  }
   report(progress, "pairs", 1);
   decide(network, shapes, options);
   report(progress, "network", 0);

@@ -41,6 +41,9 @@ def bound_things(pair, features, result, truth):
     yield from [flat, *flat.precision.free_directions, *igsp.diagnose(plane, plane, flat)]
     if result.runner_up:
         yield result.runner_up
+    site = igsp.simulate("park", stations=3, points=20000, station_distance=8, seed=3)
+    network = igsp.network(site, target_points=3000)
+    yield from [network, network.scans[1], network.links[0], network.cycles[0]]
 
 
 CLASSES = {name for name in igsp.__all__ if getattr(getattr(igsp, name), "__module__", "") == "igsp._core"}

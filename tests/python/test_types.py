@@ -20,6 +20,9 @@ row: np.ndarray = result.raise_if_not_registered().target_from_source[0]
 energies: list[float] = [record.energy for record in result.iterations]
 error: float = igsp.pose_error(result.target_from_source, np.eye(4), [0, 0, 0]).rotation_rad
 options = igsp.options(search="direct")
+network: igsp.Network = igsp.network(["a.e57", scans[0], scans[1].points], viewpoints={"a": None}, progress=True, dof=4)
+first: str = network.scans[network.components[0][0]].name + network.links[0].state
+closing: list[tuple[int, int, int]] = [cycle.scans for cycle in network.cycles if cycle.closes]
 """
 
 WRONG = {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "igsp/io.hpp"
 #include "igsp/progress.hpp"
@@ -37,6 +38,13 @@ CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points,
 
 /// Multiplies what is in memory; `bounds` and `declared_viewpoint` stay those of the file.
 void scale_cloud(CloudInput& cloud, double factor);
+
+/// The same for any cloud, also an empty one or one without extent.
+CloudInput sample_cloud(const std::filesystem::path& path, std::size_t max_points, std::string_view stage,
+                        const ProgressCallback& progress, const ReadOptions& options = {});
+
+/// Which points of the file are not in the cloud, a line for the user each; mostly none.
+std::vector<std::string> left_out_of(const CloudInput& cloud);
 
 /// Settles where the scanner stood, from the points in memory; a viewpoint that was asked for is one of the file's frame.
 void settle_viewpoint(CloudInput& cloud, const ViewpointRequest& request);

@@ -36,6 +36,25 @@ ForeignCloud open_foreign(const fs::path& path) {
   return foreign_formats().open(path);
 }
 
+std::vector<fs::path> scans_in(const fs::path& path) {
+  if (!reads_foreign(path) || !foreign_formats().scans) return {path};
+  try {
+    const std::vector<std::string> names = foreign_formats().scans(path);
+    return {names.begin(), names.end()};
+  } catch (const FileError&) {
+    return {path};
+  }
+}
+
+fs::path file_of_scan(const fs::path& scan) {
+  const std::string name = scan.string();
+  const std::size_t mark = name.rfind('#');
+  if (mark == std::string::npos || mark + 1 == name.size()) return scan;
+  if (name.find_first_not_of("0123456789", mark + 1) != std::string::npos) return scan;
+  std::error_code ignored;
+  return fs::exists(scan, ignored) ? scan : fs::path(name.substr(0, mark));
+}
+
 void write_moved_foreign(const fs::path& source, const fs::path& output, const Transformation& target_from_source) {
   foreign_formats().write_moved(source, output, target_from_source);
 }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "igsp/point_cloud.hpp"
 
@@ -25,6 +26,9 @@ struct ForeignCloud {
 struct ForeignFormats {
   std::function<bool(const std::filesystem::path&)> reads;
   std::function<ForeignCloud(const std::filesystem::path&)> open;
+  /// The names of the scans in a file, by which `open` takes each of them alone: FILE#0, FILE#1, ...; the file itself
+  /// where it holds a single one.
+  std::function<std::vector<std::string>(const std::filesystem::path&)> scans;
   /// Whether `source` can be written moved as `output`, with all that belongs to its points.
   std::function<bool(const std::filesystem::path& source, const std::filesystem::path& output)> moves;
   std::function<void(const std::filesystem::path& source, const std::filesystem::path& output, const Transformation&)>
@@ -40,6 +44,12 @@ void use_foreign_formats(ForeignFormats formats);
 bool reads_foreign(const std::filesystem::path& path);
 bool moves_foreign(const std::filesystem::path& source, const std::filesystem::path& output);
 ForeignCloud open_foreign(const std::filesystem::path& path);
+
+/// Its scans, each to be read by itself. Of a file that cannot be read, the file: reading it says why.
+std::vector<std::filesystem::path> scans_in(const std::filesystem::path& path);
+
+/// FILE of FILE#0.
+std::filesystem::path file_of_scan(const std::filesystem::path& scan);
 void write_moved_foreign(const std::filesystem::path& source, const std::filesystem::path& output,
                          const Transformation& target_from_source);
 

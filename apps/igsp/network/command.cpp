@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 struct NetworkSettings {
   std::vector<fs::path> scans;
   fs::path folder, viewpoints;
+  std::string pairs = "all";  // or "auto", or a file
   ReadOptions read;
   std::int64_t max_points = 20'000'000;
   NetworkOptions options;
@@ -49,14 +50,20 @@ ScanReading reading_of(const NetworkSettings& settings) {
   return reading;
 }
 
-void write_outputs(const fs::path& folder, const NamedNetwork& named, const NetworkOptions& options,
+void choose_pairs(NetworkOptions& options, const std::string& pairs, const std::vector<fs::path>& files) {
+  if (pairs == "all") return;
+  options.pairs = pairs == "auto" ? PairRule::automatic : PairRule::listed;
+  if (options.pairs == PairRule::listed) options.listed_pairs = read_pairs(pairs, files);
+}
+
+void write_outputs(const fs::path& folder, const Network& network, const NetworkOptions& options,
                    const std::vector<DrawnScan>& drawn) {
-  write_text(folder / "links.csv", links_csv(named));
-  write_text(folder / "network.json", report_text(network_json(named, options)));
-  write_text(folder / "network.g2o", network_g2o(named));
-  write_text(folder / "poses.tum", poses_tum(named));
-  write_text(folder / "report.html", network_page(named, options, drawn));
-  write_text(folder / "poses.csv", poses_csv(named));
+  write_text(folder / "links.csv", links_csv(network));
+  write_text(folder / "network.json", report_text(network_json(network, options)));
+  write_text(folder / "network.g2o", network_g2o(network));
+  write_text(folder / "poses.tum", poses_tum(network));
+  write_text(folder / "report.html", network_page(network, options, drawn));
+  write_text(folder / "poses.csv", poses_csv(network));
 }
 
 int exit_code(const Network& network) {
@@ -88,6 +95,7 @@ int run_network(const NetworkSettings& settings) {
     throw InvalidArgument(fmt::format("--max-points is {}; it must be at least 1000", settings.max_points));
   }
   const ScanReading reading = reading_of(settings);
+  choose_pairs(options, settings.pairs, reading.files);
   create_folder(settings.folder);
   ProgressBar bar(!settings.quiet);
   const ProgressCallback progress = bar.callback();
@@ -99,13 +107,12 @@ int run_network(const NetworkSettings& settings) {
     drawn[i] = drawn_scan(one, drawn.size());
     return one;
   };
-  const Network network = register_network(reading.files.size(), features, options, progress, store.pairs());
+  Network network = register_network(reading.files.size(), features, options, progress, store.pairs());
   stop_if_interrupted();
   bar.finish();
-  NamedNetwork named{network, {}};
-  for (const fs::path& file : reading.files) named.names.push_back(file.string());
-  write_outputs(settings.folder, named, options, drawn);
-  std::cout << network_summary(named);
+  for (std::size_t i = 0; i < network.scans.size(); ++i) network.scans[i].name = reading.files[i].string();
+  write_outputs(settings.folder, network, options, drawn);
+  std::cout << network_summary(network);
   return exit_code(network);
 }
 
@@ -138,6 +145,12 @@ void add_network_command(CLI::App& app, Command& command) {
                    wrapped("CSV, scan,x,y,z: where scanners stood, each in its scan's own frame; the space that they "
                            "saw through is evidence against wrong links"))
       ->type_name("FILE");
+  network
+      ->add_option(
+          "--pairs", settings->pairs,
+          wrapped("which pairs are tried: all; auto, the likeliest first until every scan has enough confirmed "
+                  "links or nothing is likely; or a CSV, source,target; default all"))
+      ->type_name("all|auto|FILE");
   network
       ->add_option("--min-unconfirmed-confidence", settings->options.min_unconfirmed_confidence,
                    wrapped("a link in no loop joins scans only with at least this confidence, in [0.5, 1]; default "

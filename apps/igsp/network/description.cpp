@@ -45,18 +45,19 @@ Json link_summary(const NetworkLink& link) {
           {"residual", link.residual}};
 }
 
-Json network_json(const NamedNetwork& named, const NetworkOptions& options) {
-  const Network& network = named.network;
-  Json scans = Json::array(), links = Json::array();
-  for (std::size_t i = 0; i < network.scans.size(); ++i) {
-    const NetworkScan& scan = network.scans[i];
-    scans.push_back({{"name", named.names[i]},
+Json network_json(const Network& network, const NetworkOptions& options) {
+  Json scans = Json::array(), links = Json::array(), cycles = Json::array();
+  for (const NetworkScan& scan : network.scans) {
+    scans.push_back({{"name", scan.name},
                      {"problem", scan.problem.empty() ? Json(nullptr) : Json(scan.problem)},
                      {"points", scan.points},
                      {"component", scan.component},
                      {"world_from_scan", to_json(scan.world_from_scan)},
                      {"centre", row(scan.centre)},
                      {"covariance", rows(scan.covariance)}});
+  }
+  for (const NetworkCycle& cycle : network.cycles) {
+    cycles.push_back({{"scans", cycle.scans}, {"error", cycle.error}, {"closes", cycle.closes}});
   }
   for (const NetworkLink& link : network.links) {
     Json entry = link_summary(link);
@@ -71,13 +72,13 @@ Json network_json(const NamedNetwork& named, const NetworkOptions& options) {
           {"components", network.components},
           {"scans", scans},
           {"links", links},
+          {"cycles", cycles},
           {"min_unconfirmed_confidence", options.min_unconfirmed_confidence},
           {"min_unconfirmed_matches", options.min_unconfirmed_matches},
           {"options", to_json(options.pair)}};
 }
 
-std::string network_summary(const NamedNetwork& named) {
-  const Network& network = named.network;
+std::string network_summary(const Network& network) {
   std::size_t placed = 0;
   std::string alone, separator;
   std::size_t number_alone = 0;
@@ -87,9 +88,9 @@ std::string network_summary(const NamedNetwork& named) {
       continue;
     }
     ++number_alone;
-    const std::string& problem = network.scans[component.front()].problem;
-    alone += fmt::format("{}{}: {}", separator, short_name(named.names[component.front()]),
-                         problem.empty() ? "no overlap found" : problem);
+    const NetworkScan& scan = network.scans[component.front()];
+    alone += fmt::format("{}{}: {}", separator, short_name(scan.name),
+                         scan.problem.empty() ? "no overlap found" : scan.problem);
     separator = "; ";
   }
   std::string text = fmt::format("registered {} of {} scans", placed, network.scans.size());

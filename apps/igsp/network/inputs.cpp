@@ -9,6 +9,7 @@
 
 #include "files/cloud_input.hpp"
 #include "files/csv.hpp"
+#include "files/foreign_formats.hpp"
 #include "igsp/errors.hpp"
 #include "network/common_scale.hpp"
 
@@ -50,20 +51,23 @@ double number_in(const CsvTable& table, const CsvRecord& record, std::size_t col
   return number;
 }
 
-std::size_t required_column(const CsvTable& table, std::string_view name) {
+std::size_t required_column(const CsvTable& table, std::string_view name, std::string_view all) {
   const std::optional<std::size_t> column = find_column(table, name);
-  if (!column) throw FileError(fmt::format("{}: has no column {}; scan,x,y,z are needed", table.path.string(), name));
+  if (!column) throw FileError(fmt::format("{}: has no column {}; {} are needed", table.path.string(), name, all));
   return *column;
 }
 
-std::optional<fs::path> file_named(const std::string& name, const std::vector<fs::path>& files) {
-  for (const fs::path& file : files) {
-    if (file == name) return file;
+// The scan that a field names.
+std::size_t scan_in(const CsvTable& table, const CsvRecord& record, std::size_t column,
+                    const std::vector<fs::path>& files) {
+  const std::string& name = record.fields[column];
+  auto found = std::ranges::find(files, fs::path(name));
+  if (found == files.end()) {
+    found =
+        std::ranges::find_if(files, [&](const auto& file) { return file.filename() == name || file.stem() == name; });
   }
-  for (const fs::path& file : files) {
-    if (file.filename() == name || file.stem() == name) return file;
-  }
-  return {};
+  if (found == files.end()) fail_at(table, record, column, fmt::format("\"{}\" is none of the scans given", name));
+  return found - files.begin();
 }
 
 }  // namespace
@@ -72,12 +76,9 @@ std::vector<fs::path> scan_files(const std::vector<fs::path>& given) {
   std::vector<fs::path> files;
   for (const fs::path& path : given) {
     std::error_code ignored;
-    if (fs::is_directory(path, ignored)) {
-      const std::vector<fs::path> inside = clouds_in(path);
-      files.insert(files.end(), inside.begin(), inside.end());
-    } else {
-      files.push_back(path);
-    }
+    const std::vector<fs::path> inside =
+        fs::is_directory(path, ignored) ? clouds_in(path) : std::vector<fs::path>{path};
+    files.insert(files.end(), inside.begin(), inside.end());
   }
   std::set<fs::path> seen;
   for (const fs::path& file : files) {
@@ -85,20 +86,36 @@ std::vector<fs::path> scan_files(const std::vector<fs::path>& given) {
       throw InvalidArgument(fmt::format("{} is given twice", file.string()));
     }
   }
-  return files;
+  std::vector<fs::path> scans;
+  for (const fs::path& file : files) {
+    const std::vector<fs::path> inside = scans_in(file);
+    scans.insert(scans.end(), inside.begin(), inside.end());
+  }
+  return scans;
 }
 
 std::map<fs::path, Eigen::Vector3d> read_viewpoints(const fs::path& path, const std::vector<fs::path>& files) {
   const CsvTable table = read_csv(path);
-  const std::size_t scan = required_column(table, "scan"), x = required_column(table, "x"),
-                    y = required_column(table, "y"), z = required_column(table, "z");
+  const auto column = [&](std::string_view name) { return required_column(table, name, "scan,x,y,z"); };
+  const std::size_t scan = column("scan"), x = column("x"), y = column("y"), z = column("z");
   std::map<fs::path, Eigen::Vector3d> viewpoints;
   for (const CsvRecord& record : table.records) {
-    const std::optional<fs::path> file = file_named(record.fields[scan], files);
-    if (!file) fail_at(table, record, scan, fmt::format("\"{}\" is none of the scans given", record.fields[scan]));
-    viewpoints[*file] = {number_in(table, record, x), number_in(table, record, y), number_in(table, record, z)};
+    const fs::path& file = files[scan_in(table, record, scan, files)];
+    viewpoints[file] = {number_in(table, record, x), number_in(table, record, y), number_in(table, record, z)};
   }
   return viewpoints;
+}
+
+std::vector<ScanPair> read_pairs(const fs::path& path, const std::vector<fs::path>& files) {
+  const CsvTable table = read_csv(path);
+  const std::size_t source = required_column(table, "source", "source,target"),
+                    target = required_column(table, "target", "source,target");
+  std::vector<ScanPair> pairs;
+  for (const CsvRecord& record : table.records) {
+    pairs.emplace_back(scan_in(table, record, source, files), scan_in(table, record, target, files));
+    if (pairs.back().first == pairs.back().second) fail_at(table, record, target, "the scan is paired with itself");
+  }
+  return pairs;
 }
 
 FirstLook look_at_scans(const ScanReading& reading, const ScaleOptions& scale, const ProgressCallback& progress) {
@@ -134,11 +151,11 @@ Features read_features(const ScanReading& reading, std::size_t scan, const Optio
   const fs::path& file = reading.files[scan];
   const std::string stage = fmt::format("scan {} of {}", scan + 1, reading.files.size());
   CloudInput cloud = read_cloud(file, reading.max_points, stage, progress, reading.read);
+  const auto given = reading.viewpoints.find(file);
+  settle_viewpoint(cloud, {});
+  if (given != reading.viewpoints.end()) cloud.viewpoint.viewpoint = given->second;
   if (!cloud.whole()) cloud.points = read_centroids(cloud, options.scale.voxel_size / 4, stage, progress);
-  const auto viewpoint = reading.viewpoints.find(file);
-  Scan points(cloud.points);
-  if (viewpoint != reading.viewpoints.end()) points.viewpoint = viewpoint->second;
-  Features features = extract_features(points, options);
+  Features features = extract_features(cloud.scan(), options);
   features.cloud_points = cloud.total;
   return features;
 }

@@ -8,18 +8,22 @@
 
 #include "igsp/features.hpp"
 #include "igsp/io.hpp"
+#include "igsp/network.hpp"
 #include "igsp/progress.hpp"
 
 namespace igsp::cli {
 
-/// Files as given; a folder stands for the point clouds in it, in the order of their names. Throws FileError for a
-/// folder without any, InvalidArgument for a file given twice.
+/// Files as given; a folder stands for the point clouds in it, in the order of their names, a file of several scans for
+/// these (see scans_in). Throws FileError for a folder without any, InvalidArgument for a file given twice.
 std::vector<std::filesystem::path> scan_files(const std::vector<std::filesystem::path>& given);
 
 /// scan,x,y,z: where scanners stood, each in its own scan's frame. A scan is named as on the command line, by its file
 /// name or by that without the extension. Throws FileError (also for a scan that is none of `files`).
 std::map<std::filesystem::path, Eigen::Vector3d> read_viewpoints(const std::filesystem::path& path,
                                                                  const std::vector<std::filesystem::path>& files);
+
+/// source,target: pairs of scans by their names, as above; either first. Throws as read_viewpoints.
+std::vector<ScanPair> read_pairs(const std::filesystem::path& path, const std::vector<std::filesystem::path>& files);
 
 /// How the scans of a network are read.
 struct ScanReading {

@@ -28,11 +28,11 @@ std::string bytes_of(const std::vector<float>& numbers) {
   return base64(bytes);
 }
 
-Json scan_entry(const NamedNetwork& named, std::size_t i, const DrawnScan& drawn) {
-  const NetworkScan& scan = named.network.scans[i];
+Json scan_entry(const Network& network, std::size_t i, const DrawnScan& drawn) {
+  const NetworkScan& scan = network.scans[i];
   Json sigma = Json::array();
   for (int k = 0; k < 6; ++k) sigma.push_back(std::sqrt(std::max(0.0, scan.covariance(k, k))));
-  return {{"name", named.names[i]},
+  return {{"name", scan.name},
           {"problem", scan.problem.empty() ? Json(nullptr) : Json(scan.problem)},
           {"points", scan.points},
           {"component", scan.component},
@@ -58,17 +58,16 @@ std::vector<const NetworkLink*> links_shown(const Network& network) {
   return links;
 }
 
-Json data_of(const NamedNetwork& named, const NetworkOptions& options, std::span<const DrawnScan> drawn) {
-  const Network& network = named.network;
+Json data_of(const Network& network, const NetworkOptions& options, std::span<const DrawnScan> drawn) {
   Json scans = Json::array(), links = Json::array(), counts = Json::object(), summary = Json::array();
-  for (std::size_t i = 0; i < network.scans.size(); ++i) scans.push_back(scan_entry(named, i, drawn[i]));
+  for (std::size_t i = 0; i < network.scans.size(); ++i) scans.push_back(scan_entry(network, i, drawn[i]));
   for (const NetworkLink* link : links_shown(network)) links.push_back(link_summary(*link));
   for (const LinkState state :
        {LinkState::used, LinkState::unconfirmed, LinkState::rejected, LinkState::not_registered}) {
     counts[std::string(to_string(state))] =
         std::ranges::count_if(network.links, [&](const NetworkLink& link) { return link.state == state; });
   }
-  std::istringstream lines(network_summary(named));
+  std::istringstream lines(network_summary(network));
   for (std::string line; std::getline(lines, line);) summary.push_back(line);
   return {{"igsp", version},
           {"summary", summary},
@@ -100,8 +99,8 @@ DrawnScan drawn_scan(const Features& features, std::size_t scans) {
   return drawn;
 }
 
-std::string network_page(const NamedNetwork& named, const NetworkOptions& options, std::span<const DrawnScan> drawn) {
-  return std::string(network_page_head) + inside_script(data_of(named, options, drawn)) +
+std::string network_page(const Network& network, const NetworkOptions& options, std::span<const DrawnScan> drawn) {
+  return std::string(network_page_head) + inside_script(data_of(network, options, drawn)) +
          std::string(network_page_tail);
 }
 

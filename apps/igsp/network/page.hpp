@@ -22,7 +22,7 @@ struct DrawnScan {
 DrawnScan drawn_scan(const Features& features, std::size_t scans);
 
 /// One HTML file that opens offline: map, links, stations, options. `drawn` by scan.
-std::string network_page(const NamedNetwork& named, const NetworkOptions& options, std::span<const DrawnScan> drawn);
+std::string network_page(const Network& network, const NetworkOptions& options, std::span<const DrawnScan> drawn);
 
 // The page before and after its data, assembled from template/ when igsp is built.
 extern const std::string_view network_page_head;

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <fstream>
 
+#include "files/foreign_formats.hpp"
 #include "files/output_file.hpp"
 #include "igsp/archive.hpp"
 #include "igsp/errors.hpp"
@@ -68,8 +69,8 @@ std::string text_of(const ScanReading& reading, std::size_t scan) {
 
 }  // namespace
 
-NetworkStore::NetworkStore(fs::path folder, const ScanReading& reading, const Options& options)
-    : folder_(std::move(folder)), reading_(reading), options_(options), keys_(reading.files.size()) {
+NetworkStore::NetworkStore(const fs::path& folder, const ScanReading& reading, const Options& options)
+    : folder_(folder / method_number), reading_(reading), options_(options), keys_(reading.files.size()) {
   make_folder(folder_ / "features");
   make_folder(folder_ / "pairs");
   options_text_ = fmt::format("{} {}", version, to_json(what_matters(options_)).dump());
@@ -95,7 +96,9 @@ void NetworkStore::use_voxel_size(double voxel_size) {
 
 Features NetworkStore::features(std::size_t scan, const ProgressCallback& progress) {
   const fs::path& file = reading_.files[scan];
-  keys_[scan] = fingerprint(fingerprint_of_file(file) + text_of(reading_, scan) + options_text_);
+  const fs::path content = file_of_scan(file);
+  keys_[scan] = fingerprint(fingerprint_of_file(content) + (content == file ? "" : file.filename().string()) +
+                            text_of(reading_, scan) + options_text_);
   const fs::path kept = folder_ / "features" / keys_[scan];
   if (auto features = if_readable(kept, [](const fs::path& path) { return igsp::read_features(path); })) {
     ++features_taken_;

@@ -3,19 +3,23 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "igsp/network.hpp"
 #include "network/inputs.hpp"
 
 namespace igsp::cli {
 
+/// Of the sources that the answers in a store are made by, see cmake/method_number.cmake.
+extern const std::string_view method_number;
+
 /// What a run of `igsp network` has finished, in a folder: features by the content of their file, pairs by the features
 /// of both, both by the options. A later run takes what still holds; a file that changed is another content. What
 /// cannot be kept or read back is made again.
 class NetworkStore {
  public:
-  /// `options`: of the pairs. Makes the folder; throws FileError.
-  NetworkStore(std::filesystem::path folder, const ScanReading& reading, const Options& options);
+  /// `options`: of the pairs. Makes a folder named by the method's number in `folder`; throws FileError.
+  NetworkStore(const std::filesystem::path& folder, const ScanReading& reading, const Options& options);
 
   /// The voxel size of an earlier run with these options: it stays, so that a scan added later does not make all
   /// others new. 0: none.

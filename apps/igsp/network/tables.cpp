@@ -43,52 +43,51 @@ std::string upper_triangle(const Matrix6& matrix) {
 
 }  // namespace
 
-std::string poses_csv(const NamedNetwork& named) {
+std::string poses_csv(const Network& network) {
   std::string table = "scan,component,qw,qx,qy,qz,tx,ty,tz\n";
-  for (std::size_t i = 0; i < named.names.size(); ++i) {
-    const NetworkScan& scan = named.network.scans[i];
+  for (const NetworkScan& scan : network.scans) {
     const Eigen::Quaterniond q = rotation_of(scan.world_from_scan);
     const Eigen::Vector3d& t = scan.world_from_scan.translation();
-    table += csv_line({named.names[i], std::to_string(scan.component), text(q.w()), text(q.x()), text(q.y()),
-                       text(q.z()), text(t.x()), text(t.y()), text(t.z())});
+    table += csv_line({scan.name, std::to_string(scan.component), text(q.w()), text(q.x()), text(q.y()), text(q.z()),
+                       text(t.x()), text(t.y()), text(t.z())});
   }
   return table;
 }
 
-std::string links_csv(const NamedNetwork& named) {
+std::string links_csv(const Network& network) {
   std::string table =
       "source,target,state,confidence,overlap,rmse,mutual_matches,agreeing_matches,violation,consistent_triangles,"
       "residual,"
       "qw,qx,qy,qz,tx,ty,tz,reason\n";
-  for (const NetworkLink& link : named.network.links) {
+  for (const NetworkLink& link : network.links) {
     const Eigen::Quaterniond q = rotation_of(link.target_from_source);
     const Eigen::Vector3d& t = link.target_from_source.translation();
-    table += csv_line({named.names[link.source], named.names[link.target], std::string(to_string(link.state)),
-                       text(link.confidence), text(link.overlap), text(link.rmse), std::to_string(link.mutual_matches),
-                       std::to_string(link.agreeing_matches), text(link.violation),
+    table += csv_line({network.scans[link.source].name, network.scans[link.target].name,
+                       std::string(to_string(link.state)), text(link.confidence), text(link.overlap), text(link.rmse),
+                       std::to_string(link.mutual_matches), std::to_string(link.agreeing_matches), text(link.violation),
                        std::to_string(link.consistent_triangles), text(link.residual), text(q.w()), text(q.x()),
                        text(q.y()), text(q.z()), text(t.x()), text(t.y()), text(t.z()), link.reason});
   }
   return table;
 }
 
-std::string poses_tum(const NamedNetwork& named) {
+std::string poses_tum(const Network& network) {
   std::string lines;
-  for (std::size_t i = 0; i < named.names.size(); ++i) {
-    lines += fmt::format("{} {}\n", i, tum_pose(named.network.scans[i].world_from_scan));
+  for (std::size_t i = 0; i < network.scans.size(); ++i) {
+    lines += fmt::format("{} {}\n", i, tum_pose(network.scans[i].world_from_scan));
   }
   return lines;
 }
 
-std::string network_g2o(const NamedNetwork& named) {
+std::string network_g2o(const Network& network) {
   std::string lines;
-  for (std::size_t i = 0; i < named.names.size(); ++i) {
-    lines += fmt::format("VERTEX_SE3:QUAT {} {}\n", i, tum_pose(named.network.scans[i].world_from_scan));
+  for (std::size_t i = 0; i < network.scans.size(); ++i) {
+    lines += fmt::format("VERTEX_SE3:QUAT {} {}\n", i, tum_pose(network.scans[i].world_from_scan));
   }
-  for (const std::vector<std::size_t>& component : named.network.components) {
+  for (const std::vector<std::size_t>& component : network.components) {
     lines += fmt::format("FIX {}\n", component.front());
   }
-  for (const NetworkLink& link : named.network.links) {
+  for (const NetworkLink& link : network.links) {
     if (link.state != LinkState::used && link.state != LinkState::unconfirmed) continue;
     lines += fmt::format("EDGE_SE3:QUAT {} {} {}{}\n", link.target, link.source, tum_pose(link.target_from_source),
                          upper_triangle(g2o_information(link)));

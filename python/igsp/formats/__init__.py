@@ -30,6 +30,8 @@ __all__ = [
     "read_chunks",
     "read_cloud",
     "read_metadata",
+    "scan_names",
+    "split_name",
     "write_aligned",
 ]
 
@@ -53,6 +55,24 @@ _WRITERS: dict[str, ModuleType] = {
     ".ptx": _ptx,
     ".pts": _pts,
 }
+
+
+def split_name(path: PathLike) -> tuple[str, int | None]:
+    """(FILE, 1) of FILE#1, which names one scan of a file; (FILE, None) of anything else."""
+    name = os.fspath(path)
+    file, mark, number = name.rpartition("#")
+    if mark and number.isdecimal() and not os.path.exists(name):
+        return file, int(number)
+    return name, None
+
+
+def scan_names(path: PathLike) -> list[str]:
+    """The names of the scans in a file by which each is read alone: FILE#0, FILE#1, ...; FILE if it holds one."""
+    name = os.fspath(path)
+    if split_name(name)[1] is not None:
+        return [name]
+    count = len(read_metadata(name).scans)
+    return [f"{name}#{index}" for index in range(count)] if count > 1 else [name]
 
 
 def is_written(path: PathLike) -> bool:
@@ -129,14 +149,19 @@ def read_chunks(
     keep_noise: bool = False,
 ) -> ChunkReader:
     """Iterates over the points in arrays of at most `points_per_chunk` rows, (N, 3) float64; see `read_cloud`."""
-    return ChunkReader(path, points_per_chunk, Selection(scan, apply_pose, keep_noise))
+    file, named = split_name(path)
+    if named is not None and scan is not None:
+        raise ValueError(f"scan: {os.fspath(path)} names its scan already")
+    selection = Selection(named if scan is None else scan, apply_pose, keep_noise)
+    return ChunkReader(file, points_per_chunk, selection)
 
 
 def read_cloud(path: PathLike, *, scan: int | None = None, apply_pose: bool = True, keep_noise: bool = False) -> Cloud:
     """Reads the points of a file.
 
     Args:
-        path: its extension says which format: .las, .laz (also COPC), .e57, .ptx, .pts, .obj, .off, .stl or .vtk.
+        path: its extension says which format: .las, .laz (also COPC), .e57, .ptx, .pts, .obj, .off, .stl or .vtk;
+            FILE#1 is the scan 1 of FILE.
         scan: index of the scan to read, from 0; all of them by default. LAS and PTS files are one scan.
         apply_pose: whether the points of every scan are brought to the file's frame by its pose (E57, PTX);
             otherwise they stay in the frame of their scanner.
@@ -207,11 +232,12 @@ def write_aligned(
     if _WRITERS.get(_extension(output_path)) is not writer:
         known = " or ".join(extension for extension, module in _WRITERS.items() if module is writer)
         raise FormatError(output_path, f"the source is written in its own format: the name must end in {known}")
-    writer.write_aligned(source_path, output_path, motion, Selection(scan, apply_pose))
+    source, named = split_name(source_path)
+    writer.write_aligned(source, output_path, motion, Selection(named if scan is None else scan, apply_pose))
 
 
 def _extension(path: PathLike) -> str:
-    return os.path.splitext(os.fspath(path))[1].lower()
+    return os.path.splitext(split_name(path)[0])[1].lower()
 
 
 def _known_extension(path: PathLike) -> str:

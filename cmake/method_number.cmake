@@ -1,0 +1,31 @@
+# The number of the method: 12 hexadecimal digits of the sources that answers for scans and pairs are made by. Who keeps
+# such answers keeps this number with them, so that a later version never takes an older one's for its own.
+# usage: cmake -DSOURCE_DIR=... -DOUTPUT=file.cpp -P method_number.cmake
+# Included by a CMakeLists.txt: sets method_sources.
+cmake_minimum_required(VERSION 3.25)
+if(NOT DEFINED SOURCE_DIR)
+  set(SOURCE_DIR ${CMAKE_SOURCE_DIR})
+endif()
+set(patterns)
+foreach(folder src/core src/spatial src/features src/matching src/estimation src/registration src/io apps/igsp/files)
+  list(APPEND patterns ${SOURCE_DIR}/${folder}/*.cpp ${SOURCE_DIR}/${folder}/*.hpp)
+endforeach()
+list(APPEND patterns ${SOURCE_DIR}/python/igsp/formats/*.py)
+if(CMAKE_SCRIPT_MODE_FILE)
+  file(GLOB method_sources RELATIVE ${SOURCE_DIR} ${patterns})
+else()
+  file(GLOB method_sources CONFIGURE_DEPENDS ${patterns})
+endif()
+list(FILTER method_sources EXCLUDE REGEX "_test\\.cpp$|_testing\\.hpp$")
+if(CMAKE_SCRIPT_MODE_FILE)
+  list(SORT method_sources)
+  set(all)
+  foreach(source IN LISTS method_sources)
+    file(SHA256 ${SOURCE_DIR}/${source} digest)
+    string(APPEND all "${source} ${digest}\n")
+  endforeach()
+  string(SHA256 digest "${all}")
+  string(SUBSTRING ${digest} 0 12 number)
+  file(WRITE ${OUTPUT} "#include \"network/store.hpp\"\n\nnamespace igsp::cli {\n"
+    "const std::string_view method_number = \"${number}\";\n}  // namespace igsp::cli\n")
+endif()
