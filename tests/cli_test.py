@@ -266,6 +266,34 @@ class Align(CommandTest):
         # From a guess nothing is searched, neither for the pair nor for its mirror image.
         self.assertNotIn("diagnosis:", self.igsp("align", mirrored, self.target, "--initial", self.truth, code=1).stdout)
 
+    def test_another_unit_of_length_is_named_and_found(self):
+        points = read_ply(self.source)[0]
+        feet = self.cloud("feet.ply", points / 0.3048)
+        self.assertIn("0.3048 turns feet into metres", self.igsp("align", feet, self.target, code=1).stdout)
+        for scale in ("auto", "0.3048"):
+            run = self.igsp("align", feet, self.target, "--scale", scale, "--transform", "T.txt", "-o", "a.ply",
+                            "--report", "r.json", "--html", "page.html")
+            self.assertIn("\nscale       0.30", run.stdout)
+            matrix = np.loadtxt(self.folder / "T.txt")
+            truth = np.loadtxt(self.truth)
+            expected = points @ truth[:3, :3].T + truth[:3, 3]
+            np.testing.assert_allclose(points / 0.3048 @ matrix[:3, :3].T + matrix[:3, 3], expected, atol=0.05)
+            np.testing.assert_allclose(read_ply(self.folder / "a.ply")[0], expected, atol=0.05)
+            report = json.loads((self.folder / "r.json").read_text())
+            self.assertAlmostEqual(report["scale"], 0.3048, delta=3e-4)
+            rotation = np.array(report["target_from_source"])[:3, :3]
+            np.testing.assert_allclose(rotation @ rotation.T, np.eye(3), atol=1e-9)
+            self.igsp("report", "r.json", "-o", "again.html")
+            refused = self.igsp("evaluate", "--transform", "T.txt", "--truth", self.truth, code=3)
+            self.assertIn("multiplies by 0.30", refused.stderr)
+
+    def test_a_scale_that_is_none_is_refused(self):
+        for scale in ("big", "0", "-1", "nan", "1e300"):
+            self.assertIn("it must be auto or a factor",
+                          self.igsp("align", self.source, self.target, "--scale", scale, code=2).stderr)
+        self.assertIn("exclude each other", self.igsp("align", self.source, self.target, "--scale", "auto", "--initial",
+                                                      self.truth, code=2).stderr)
+
     def test_a_large_cloud_is_streamed_to_nearly_the_same_answer(self):
         self.igsp("align", self.source, self.target, "--max-points", "20000", "--transform", "T.txt",
                   "--report", "r.json")

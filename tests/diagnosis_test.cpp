@@ -60,6 +60,30 @@ TEST(Diagnosis, LeftHandedSourceIsNamedAndItsReflectionGiven) {
   EXPECT_LT((*causes[0].target_from_source - truth).cwiseAbs().maxCoeff(), 0.05);
 }
 
+TEST(Diagnosis, AnotherUnitOfLengthIsNamed) {
+  static constexpr double feet_per_metre = 3.28084;
+  const Pair& pair = room();
+  const Points source = each(pair.source, [](const auto& point) { return (feet_per_metre * point).eval(); });
+  const auto causes = causes_of_refusal(source, pair.target);
+  ASSERT_ONLY_CAUSE(causes, Cause::scale);
+  EXPECT_SAYS(causes, "0.3048 turns feet into metres");
+  ASSERT_TRUE(causes[0].target_from_source);
+  const double cubed = causes[0].target_from_source->determinant();
+  EXPECT_NEAR(cubed, std::pow(1 / feet_per_metre, 3), 1e-4);
+}
+
+TEST(Diagnosis, FivePercentTooLongIsNamed) {
+  const Pair& pair = room();
+  const Points source = each(pair.source, [](const auto& point) { return (1.05 * point).eval(); });
+  const auto causes = causes_of_refusal(source, pair.target);
+  ASSERT_ONLY_CAUSE(causes, Cause::scale);
+  EXPECT_SAYS(causes, "multiplied by 0.95");
+  Eigen::Matrix4d truth = pair.truth.matrix();
+  truth.leftCols<3>() /= 1.05;
+  ASSERT_TRUE(causes[0].target_from_source);
+  EXPECT_LT((*causes[0].target_from_source - truth).cwiseAbs().maxCoeff(), 0.05);
+}
+
 TEST(Diagnosis, WithoutSearchOnlyTheCoordinatesAreLookedAt) {
   const Points source =
       each(room().source, [](const auto& point) { return Eigen::Vector3d(-point.x(), point.y(), point.z()); });

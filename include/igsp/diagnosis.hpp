@@ -26,8 +26,8 @@ std::string_view to_string(Cause cause);
 struct Diagnosis {
   Cause cause = Cause::too_few_points;
   std::string description;  ///< one sentence: the cause, how it was seen, the remedy
-  /// What would register, p_target = (matrix * (p_source, 1)): with a reflection where mirrored, a factor where the scale
-  /// differs. None: not looked for.
+  /// What would register, p_target = (matrix * (p_source, 1)): with a reflection where mirrored, a factor where the
+  /// scale differs. None: not looked for.
   std::optional<Eigen::Matrix4d> target_from_source;
 };
 

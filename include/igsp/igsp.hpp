@@ -7,6 +7,7 @@
 #include "igsp/evaluation.hpp"
 #include "igsp/io.hpp"
 #include "igsp/network.hpp"
+#include "igsp/similarity.hpp"
 #include "igsp/simulation.hpp"
 #include "igsp/version.hpp"
 #include "igsp/viewpoint.hpp"

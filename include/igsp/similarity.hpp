@@ -12,11 +12,11 @@ struct SimilarityResult {
   Result result;        ///< of the source after that, in the target's unit
 };
 
-/// For clouds of which one has no or another unit of length: meshes from photographs, feet beside metres, a scanner that
-/// measures a few percent too long. The factor is voted for by the lengths between candidate correspondences, whatever
-/// its size, and estimated with the pose by point-to-plane registration. Where nothing registers the factor is near 1,
-/// from what was tried first. Costs up to twelve times as much as `align`. Throws as `align` does; options.scale.voxel_size is
-/// the target's.
+/// For clouds of which one has no or another unit of length: meshes from photographs, feet beside metres, a scanner
+/// that measures a few percent too long. The factor is voted for by the lengths between candidate correspondences,
+/// whatever its size, and estimated with the pose by point-to-plane registration. Where nothing registers the factor is
+/// near 1, from what was tried first. Costs up to twelve times as much as `align`. Throws as `align` does;
+/// options.scale.voxel_size is the target's.
 SimilarityResult align_similarity(const Scan& source, const Scan& target, const Options& options = {},
                                   const ProgressCallback& progress = {});
 

@@ -22,6 +22,7 @@ from igsp._core import (
     Precision,
     Result,
     RunnerUp,
+    SimilarityResult,
     SimulatedScan,
     ViewpointFinding,
     simulate,
@@ -40,7 +41,7 @@ from igsp.files import (
     write_transformation,
 )
 from igsp.many_scans import network
-from igsp.registration import align, diagnose, extract_features, options
+from igsp.registration import align, align_similarity, diagnose, extract_features, options
 from igsp.viewpoints import find_viewpoint
 
 __all__ = [
@@ -61,10 +62,12 @@ __all__ = [
     "Precision",
     "Result",
     "RunnerUp",
+    "SimilarityResult",
     "SimulatedScan",
     "ViewpointFinding",
     "__version__",
     "align",
+    "align_similarity",
     "diagnose",
     "extract_features",
     "find_viewpoint",

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from igsp import _core
-from igsp._core import Diagnosis, Features, Result
+from igsp._core import Diagnosis, Features, Result, SimilarityResult
 from igsp.arrays import Points, matrix_array
 from igsp.progress import ProgressBar, ProgressFunction
 from igsp.viewpoints import Viewpoint, load, settle
@@ -64,6 +64,26 @@ def align(
         )
 
 
+def align_similarity(
+    source: object,
+    target: object,
+    *,
+    source_viewpoint: Viewpoint = "auto",
+    target_viewpoint: Viewpoint = "auto",
+    progress: Progress = False,
+    **options: Unpack[OptionKeywords],
+) -> SimilarityResult:
+    """A rigid transformation and one factor of scale, where the clouds have no common unit of length: seven degrees of freedom.
+
+    Parameters as for `align`, but no Features and no guess. `result.factor` is what `source` was multiplied by, whatever
+    its size; `result.result` is the answer for it in the target's unit, `result.target_from_source` both in one (4, 4) matrix.
+    Takes up to twelve times as long as `align`.
+    """
+    with progress_function(progress) as report:
+        scans = _load_both(source, target, source_viewpoint, target_viewpoint)
+        return _core.align_similarity(*scans, plain_options(options), report)
+
+
 def diagnose(
     source: object,
     target: object,
@@ -74,10 +94,10 @@ def diagnose(
     target_viewpoint: Viewpoint = "auto",
     progress: Progress = False,
 ) -> list[Diagnosis]:
-    """Why `align` may have refused this pair: mirrored or flat clouds, degrees, coarse coordinates, too few points.
+    """Why `align` may have refused this pair: mirrored, flat or in another scale, degrees, coarse coordinates, few points.
 
     `source`, `target`, their viewpoints: as given to `align`, but no Features. `refused`: its answer, whose options are used again.
-    `search`: False leaves out what takes about as long as `align` itself, registering the mirrored source.
+    `search`: False leaves out what is found by registration, the mirrored source and the one in another scale.
 
     Most likely first; empty if nothing was found, as for clouds that simply do not overlap, and for a registered pair.
     """

@@ -13,6 +13,7 @@ void bind_result(nb::module_& module);
 void bind_features(nb::module_& module);
 void bind_viewpoint(nb::module_& module);
 void bind_align(nb::module_& module);
+void bind_similarity(nb::module_& module);
 void bind_network(nb::module_& module);
 void bind_diagnosis(nb::module_& module);
 void bind_evaluation(nb::module_& module);

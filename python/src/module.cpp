@@ -11,6 +11,7 @@ NB_MODULE(_core, module) {
   bind_features(module);
   bind_viewpoint(module);
   bind_align(module);
+  bind_similarity(module);
   bind_network(module);
   bind_diagnosis(module);
   bind_evaluation(module);

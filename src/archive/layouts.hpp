@@ -10,6 +10,7 @@
 #include "igsp/features.hpp"
 #include "igsp/network.hpp"
 #include "igsp/result.hpp"
+#include "igsp/similarity.hpp"
 #include "igsp/simulation.hpp"
 #include "igsp/viewpoint.hpp"
 
@@ -107,9 +108,12 @@ template <>
 struct Layout<Precision> {
   static constexpr std::string_view name = "Precision";
   static constexpr std::tuple fields = {
-      Field{"inlier_rmse", &Precision::inlier_rmse},         Field{"centre", &Precision::centre},
-      Field{"information", &Precision::information},         Field{"covariance", &Precision::covariance},
-      Field{"scale", &Precision::scale},                     Field{"scale_sigma", &Precision::scale_sigma},
+      Field{"inlier_rmse", &Precision::inlier_rmse},
+      Field{"centre", &Precision::centre},
+      Field{"information", &Precision::information},
+      Field{"covariance", &Precision::covariance},
+      Field{"scale", &Precision::scale},
+      Field{"scale_sigma", &Precision::scale_sigma},
       Field{"free_directions", &Precision::free_directions},
   };
 };
@@ -221,6 +225,16 @@ struct Layout<MatchQuality> {
 };
 
 template <>
+struct Layout<SimilarityResult> {
+  static constexpr std::string_view name = "SimilarityResult";
+  static constexpr std::tuple fields = {
+      Field{"factor", &SimilarityResult::factor},
+      Field{"sigma", &SimilarityResult::sigma},
+      Field{"result", &SimilarityResult::result},
+  };
+};
+
+template <>
 struct Layout<SimulatedScan> {
   static constexpr std::string_view name = "SimulatedScan";
   static constexpr std::tuple fields = {
@@ -292,7 +306,7 @@ struct Layout<Network> {
 using AllStructs =
     std::tuple<StrayPoints, Features, KeypointMatch, IterationRecord, CloudSummary, FreeDirection, Precision,
                FreeSpaceViolation, FreeSpace, Evidence, RunnerUp, Result, Diagnosis, PoseError, MatchQuality,
-               SimulatedScan, ViewpointFinding, NetworkScan, NetworkLink, NetworkCycle, Network>;
+               SimilarityResult, SimulatedScan, ViewpointFinding, NetworkScan, NetworkLink, NetworkCycle, Network>;
 
 template <typename T>
 concept HasLayout = requires {

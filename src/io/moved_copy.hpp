@@ -26,8 +26,9 @@ std::vector<std::string> other_properties(const std::filesystem::path& source, c
 /// Writes `source`, moved, in the format that it has: coordinates change, normals and other directions turn, the
 /// viewpoint of a PCD or a PLY moves; every other byte is a copy: properties, faces, comments, cells without a point. A
 /// value that does not change keeps its text. Memory is bounded whatever the size, save for PCD binary_compressed,
-/// whose body is one block. The linear part may hold a factor of scale, which directions do not take. Nothing half-written is left. Throws FileError, also where records that hold no points are
-/// cut short, and Cancelled. Returns whether coordinates are of another type than in `source`.
+/// whose body is one block. The linear part may hold a factor of scale, which directions do not take. Nothing
+/// half-written is left. Throws FileError, also where records that hold no points are cut short, and Cancelled. Returns
+/// whether coordinates are of another type than in `source`.
 bool write_moved(const std::filesystem::path& source, const std::filesystem::path& destination,
                  const Transformation& destination_from_source, const MoveOptions& options = {});
 

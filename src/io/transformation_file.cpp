@@ -26,7 +26,7 @@ std::optional<std::string> why_not_rigid(const Eigen::Matrix4d& matrix) {
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
   const double deviation = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   const double scale = std::cbrt(rotation.determinant());
-  if (std::abs(scale - 1) > rigid_tolerance &&
+  if (scale > 0 && std::abs(scale - 1) > rigid_tolerance &&
       (rotation.transpose() * rotation / (scale * scale)).isIdentity(rigid_tolerance)) {
     return fmt::format("not a rigid motion: the matrix also multiplies by {:.6g}", scale);
   }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "io/io_testing.hpp"
+#include "io/whole_file.hpp"
 
 namespace igsp {
 namespace {
@@ -55,6 +56,13 @@ TEST(TransformationFile, RowsInAnyLayout) {
 
 TEST(TransformationFile, RoundedMatricesAreTakenAsTheyAre) {
   EXPECT_EQ(read_content("0.8 -0.6 0 0\n0.6 0.8001 0 0\n0 0 1 0\n0 0 0 1\n")(1, 1), 0.8001);
+}
+
+TEST(TransformationFile, AFactorOfScaleIsWrittenAndNamedWhenItIsRead) {
+  const TemporaryFolder folder;
+  write_transformation(folder / "T.txt", quarter_turn(), 0.5);
+  EXPECT_EQ(io::read_whole(folder / "T.txt", 1000), "0 -0.5 0 10\n0.5 0 0 -20\n0 0 0.5 0.5\n0 0 0 1\n");
+  expect_file_error([&] { read_transformation(folder / "T.txt"); }, {"not a rigid motion", "multiplies by 0.5"});
 }
 
 TEST(TransformationFile, WhatIsNoRigidMotionIsRefused) {

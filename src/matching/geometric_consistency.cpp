@@ -58,10 +58,9 @@ IGSP_MULTIVERSION void agreement_row(const Arrays& arrays, std::size_t c, std::s
                   z = qz[c] + sign * qz[d];
       const float ua = x * dax + y * day + z * daz, ub = x * dbx + y * dby + z * dbz;
       const float ab = dax * dbx + day * dby + daz * dbz;
-      const float cross =
-          (y * daz - z * day) * dbx + (z * dax - x * daz) * dby + (x * day - y * dax) * dbz;
+      const float cross = (y * daz - z * day) * dbx + (z * dax - x * daz) * dby + (x * day - y * dax) * dbz;
       const float turned = 2.0f * ua * ub + (w * w - x * x - y * y - z * z) * ab + 2.0f * w * cross;
-      const int directions = turned > limits.min_direction_cosine * (1.0f + sign * dot) * (a2 + b2);
+      const int directions = turned > limits.min_direction_cosine * 2.0f * (1.0f + sign * dot) * std::sqrt(a2 * b2);
       agrees[lane] = static_cast<unsigned char>(lengths & long_enough & rotations & directions);
     }
     std::uint64_t bits = 0;
@@ -77,10 +76,9 @@ ConsistencyGraph consistency_graph(std::span<const Candidate> candidates, PointV
   ConsistencyGraph graph(candidates.size());
   const Arrays arrays = make_arrays(candidates, source, target);
   // The angle between rotations is twice that between their quaternions.
-  const Limits limits{static_cast<float>(options.length_tolerance),
-                      static_cast<float>(options.min_length * options.min_length),
-                      static_cast<float>(std::cos(options.max_angle_rad / 2)),
-                      static_cast<float>(std::cos(options.max_angle_rad))};
+  const Limits limits{
+      static_cast<float>(options.length_tolerance), static_cast<float>(options.min_length * options.min_length),
+      static_cast<float>(std::cos(options.max_angle_rad / 2)), static_cast<float>(std::cos(options.max_angle_rad))};
   const std::size_t tail = candidates.size() % 64;
   parallel_blocks(candidates.size(), threads, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {

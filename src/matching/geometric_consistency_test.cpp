@@ -44,18 +44,22 @@ Scene random_scene(std::uint64_t seed) {
   return scene;
 }
 
-/// How much room two candidates have before they stop to agree, [units of the cloud] and radians; positive: they agree.
+/// How much room two candidates have before they stop to agree, [units of the cloud], radians and a cosine; positive:
+/// they agree.
 struct Margins {
-  double length, long_enough, angle;
+  double length, long_enough, angle, direction;
 };
 
 Margins margins(const Scene& scene, std::size_t c, std::size_t d) {
   const Candidate &x = scene.candidates[c], &y = scene.candidates[d];
-  const double a = (scene.source[x.source] - scene.source[y.source]).norm();
-  const double b = (scene.target[x.target] - scene.target[y.target]).norm();
-  const double dot = std::abs(x.target_from_source.cast<double>().dot(y.target_from_source.cast<double>()));
+  const Eigen::Vector3d from = scene.source[x.source] - scene.source[y.source];
+  const Eigen::Vector3d to = scene.target[x.target] - scene.target[y.target];
+  const double a = from.norm(), b = to.norm();
+  const Eigen::Quaterniond p = x.target_from_source.cast<double>(), q = y.target_from_source.cast<double>();
+  const double along = to.dot(p.slerp(0.5, q) * from) / std::max(1e-12, a * b);
   return {scene.options.length_tolerance - std::abs(a - b), std::min(a, b) - scene.options.min_length,
-          scene.options.max_angle_rad - 2 * std::acos(std::min(1.0, dot))};
+          scene.options.max_angle_rad - 2 * std::acos(std::min(1.0, std::abs(p.dot(q)))),
+          along - std::cos(scene.options.max_angle_rad)};
 }
 
 ConsistencyGraph graph_of(const Scene& scene, int threads = 1) {
@@ -76,8 +80,10 @@ RC_GTEST_PROP(ConsistencyGraph, EqualsAPlainDoubleLoopWithinItsStatedTolerance, 
       const Margins m = margins(scene, c, d);
       const double shorter = scene.options.min_length + m.long_enough;
       const double slack = shorter > 0 ? tolerance * tolerance / (4 * shorter) : tolerance;
-      const bool certainly = m.length > slack + rounding && m.long_enough > rounding && m.angle > rounding;
-      const bool certainly_not = m.length < -rounding || m.long_enough < -rounding || m.angle < -rounding;
+      const bool certainly =
+          m.length > slack + rounding && m.long_enough > rounding && m.angle > rounding && m.direction > rounding;
+      const bool certainly_not =
+          m.length < -rounding || m.long_enough < -rounding || m.angle < -rounding || m.direction < -rounding;
       if (certainly) RC_ASSERT(graph.agree(c, d));
       if (certainly_not) RC_ASSERT(!graph.agree(c, d));
     }
@@ -89,7 +95,7 @@ TEST(ConsistencyGraph, TheSlackOfTheLengthTestIsWhatItIsSaidToBe) {
   for (const double length : {4.0, 6.0, 20.0, 100.0}) {
     double largest = 0;  // difference of lengths that still agrees
     for (double difference = 0; difference < 1.1 * tolerance; difference += 0.001) {
-      const Points source{{0, 0, 0}, {length + 1e-3, 0, 0}}, target{{0, 0, 0}, {0, length + 1e-3 + difference, 0}};
+      const Points source{{0, 0, 0}, {length + 1e-3, 0, 0}}, target{{0, 0, 0}, {length + 1e-3 + difference, 0, 0}};
       const std::vector<Candidate> candidates{{0, 0, 0, Eigen::Quaternionf::Identity()},
                                               {1, 1, 0, Eigen::Quaternionf::Identity()}};
       const ConsistencyGraph graph = consistency_graph(candidates, source, target, {tolerance, length, 0.1}, 1);
@@ -97,6 +103,19 @@ TEST(ConsistencyGraph, TheSlackOfTheLengthTestIsWhatItIsSaidToBe) {
     }
     EXPECT_LT(largest, tolerance);
     EXPECT_GT(largest, tolerance - tolerance * tolerance / (4 * length) - 0.002) << "length " << length;
+  }
+}
+
+// Lengths and frames alone would let half of all directions agree.
+TEST(ConsistencyGraph, WhatPointsElsewhereDoesNotAgree) {
+  const Points source{{0, 0, 0}, {10, 0, 0}};
+  const std::vector<Candidate> candidates{{0, 0, 0, Eigen::Quaternionf::Identity()},
+                                          {1, 1, 0, Eigen::Quaternionf::Identity()}};
+  for (const double degrees : {0.0, 20.0, 40.0, 50.0, 90.0, 180.0}) {
+    const double angle = degrees * std::numbers::pi / 180;
+    const Points target{{0, 0, 0}, {10 * std::cos(angle), 10 * std::sin(angle), 0}};
+    const ConsistencyOptions options{2, 4, 45 * std::numbers::pi / 180};
+    EXPECT_EQ(consistency_graph(candidates, source, target, options, 1).agree(0, 1), degrees < 45) << degrees;
   }
 }
 

@@ -7,7 +7,7 @@
 namespace igsp {
 namespace {
 
-constexpr std::size_t max_candidates = 1000;  // those that stand out most
+constexpr std::size_t max_candidates = 1000;   // those that stand out most
 constexpr float min_rotation_cosine = 0.924f;  // of half the angle between two frames' rotations: 45 degrees
 constexpr float min_direction_cosine = 0.94f;  // 20 degrees
 constexpr double largest_log = 0.405;          // of the factor: 3/2
@@ -60,8 +60,7 @@ RatioPeak ratio_peak(std::span<const Candidate> candidates, PointView source, Po
     // What lies beside, in a window five times as wide.
     const int wide = 5 * reach + 2;
     const double width = std::min(bins - 1, centre + wide) - std::max(0, centre - wide) + 1;
-    const double expected =
-        (sum_around(votes, centre, wide) - inside) / (width - (2 * reach + 1)) * (2 * reach + 1);
+    const double expected = (sum_around(votes, centre, wide) - inside) / (width - (2 * reach + 1)) * (2 * reach + 1);
     const double prominence = (inside - expected) / std::sqrt(expected + 1);
     if (prominence <= best.prominence) continue;
     double mean = 0;

@@ -33,7 +33,7 @@ constexpr double rival_inliers = 0.5;    // of the winner's
 constexpr double settled_quality = 1.5;  // decades, over other poses ...
 constexpr double settled_odds = 0.1;     // of chance: no wrong pose of 124 came below 0.2
 constexpr double settled_share = 1.25;   // of the agreement expected: right poses have 1.3 to 2, a square room 1.1
-constexpr std::size_t carried = 3;  // from the coarser scale to the finer
+constexpr std::size_t carried = 3;       // from the coarser scale to the finer
 
 std::vector<Hypothesis> propose(CommonFrame& frame, const Options& options) {
   const PreparedCloud &source = frame.source(), &target = frame.target();

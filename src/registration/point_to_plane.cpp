@@ -137,8 +137,8 @@ ScaleFit fit_scale(Surface& source, Surface& target, const Transformation& initi
                    const PointToPlaneOptions& options) {
   ScaleFit fit{1, std::numeric_limits<double>::infinity(), initial};
   for (const double radius : options.radii) {
-    NormalEquations equations = linearise(source, target, fit.target_from_source, fit.factor,
-                                          radius * options.voxel_size, options.max_points);
+    NormalEquations equations =
+        linearise(source, target, fit.target_from_source, fit.factor, radius * options.voxel_size, options.max_points);
     if (equations.pairs < min_pairs) break;
     if (options.degrees_of_freedom == 4) fix_tilt(equations);
     const Eigen::LDLT<Matrix7> solver(equations.information);

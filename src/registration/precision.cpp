@@ -31,7 +31,8 @@ constexpr double fine_normal_radius = 1.5;  // voxels
 constexpr double fine_search_radius = 1.0;  // voxels: that of the last refinement steps
 constexpr std::size_t max_fine_points = 8000;
 
-constexpr std::array<double, 6> scale_radii{3, 3, 2, 2, 1.5, 1};  // voxels: ends of a scan that is 5 % too long lie far off
+constexpr std::array<double, 6> scale_radii{3, 3,   2,
+                                            2, 1.5, 1};  // voxels: ends of a scan that is 5 % too long lie far off
 constexpr std::size_t max_scale_points = 2000;
 
 // Surfaces at a right pose differ in scale by up to 2.4 % (hand-held depth cameras), those of laser scans by 0.1 %.

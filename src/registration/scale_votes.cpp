@@ -10,7 +10,7 @@
 namespace igsp {
 namespace {
 
-constexpr double min_length = 8.0;        // voxels
+constexpr double min_length = 8.0;         // voxels
 constexpr double enough_prominence = 6.0;  // of 13 pairs without overlap, 2 voxels sizes each, one vote is above
 constexpr double same_factor = 0.15;       // of the logarithm: seen in voxels of the same size
 constexpr double farthest = 0.7;           // of the logarithm, from the ratio of the clouds' own voxel sizes
@@ -32,9 +32,8 @@ double own_voxel_size(const TrimmedCloud& cloud, const Options& options) {
 std::vector<double> expected_factors(double own_ratio) {
   std::vector<double> factors;
   for (const double factor : {1.0, own_ratio, own_ratio * widening, own_ratio / widening}) {
-    const bool seen = std::ranges::any_of(factors, [&](double other) {
-      return std::abs(std::log(factor / other)) < same_factor;
-    });
+    const bool seen =
+        std::ranges::any_of(factors, [&](double other) { return std::abs(std::log(factor / other)) < same_factor; });
     const bool too_far = std::abs(std::log(factor / own_ratio)) > farthest;
     if (!seen && !too_far) factors.push_back(factor);
   }
@@ -50,11 +49,10 @@ ScaledScan::ScaledScan(const Scan& scan, double factor) : points(scan.points.beg
 
 RatioPeak scale_vote(const Features& source, const Features& target, double expected, const Options& options) {
   const Points moving = keypoints_of(source, expected), fixed = keypoints_of(target, 1.0);
-  const auto candidates = feature_candidates({moving, source.frames, source.descriptors},
-                                             {fixed, target.frames, target.descriptors},
-                                             options.degrees_of_freedom == 4 ? 2 : 4,
-                                             options.hypotheses.candidates_per_keypoint,
-                                             options.hypotheses.max_candidates, options.threads);
+  const auto candidates =
+      feature_candidates({moving, source.frames, source.descriptors}, {fixed, target.frames, target.descriptors},
+                         options.degrees_of_freedom == 4 ? 2 : 4, options.hypotheses.candidates_per_keypoint,
+                         options.hypotheses.max_candidates, options.threads);
   RatioPeak peak = ratio_peak(candidates, moving, fixed, min_length * target.voxel_size);
   peak.factor *= expected;
   return peak;

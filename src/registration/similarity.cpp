@@ -9,8 +9,8 @@ namespace igsp {
 namespace {
 
 constexpr int max_steps = 4;
-constexpr double settled = 1e-4;   // of the logarithm of a step: no point moves by more than a fraction of the noise
-constexpr double sensible = 0.3;   // of the logarithm of a step, which must follow from a pose that is nearly right
+constexpr double settled = 1e-4;  // of the logarithm of a step: no point moves by more than a fraction of the noise
+constexpr double sensible = 0.3;  // of the logarithm of a step, which must follow from a pose that is nearly right
 constexpr std::size_t max_tried = 3;
 
 SimilarityResult at_factor(const Scan& source, const Scan& target, double factor, const Options& options,

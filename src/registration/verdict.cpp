@@ -185,8 +185,9 @@ void judge(CommonFrame& frame, CoarserScale& coarser, const SearchOutcome& outco
   result.reason = in_words(result);
   if (is_free) result.reason += "; not fixed by the surfaces: " + free_motions(judgement.free_directions);
   if (other_scale) {
-    result.reason += fmt::format("; in another scale: the source fits best multiplied by {:.3f}, which no rigid motion does",
-                                 result.precision.scale);
+    result.reason +=
+        fmt::format("; in another scale: the source fits best multiplied by {:.3f}, which no rigid motion does",
+                    result.precision.scale);
   }
   if (!result.registered && !is_free && !other_scale) {
     result.reason += why_refused(judgement);

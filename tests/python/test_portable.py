@@ -43,6 +43,7 @@ def bound_things(pair, features, result, truth):
         yield result.runner_up
     site = igsp.simulate("park", stations=3, points=20000, station_distance=8, seed=3)
     network = igsp.network(site, target_points=3000)
+    yield igsp.align_similarity(*pair)
     yield from [network, network.scans[1], network.links[0], network.cycles[0]]
 
 

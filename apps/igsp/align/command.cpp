@@ -88,7 +88,8 @@ void check_outputs(const AlignSettings& settings) {
 
 void check_scaled_output(const AlignSettings& settings, const ScaleRequest& scale) {
   if (scale.automatic && !settings.initial.empty()) {
-    throw InvalidArgument("--scale auto and --initial exclude each other: a guess holds for one scale; give the factor");
+    throw InvalidArgument(
+        "--scale auto and --initial exclude each other: a guess holds for one scale; give the factor");
   }
   if ((scale.automatic || scale.factor != 1) && moves_foreign(settings.source, settings.aligned)) {
     throw InvalidArgument(fmt::format("-o {}: not written in another scale; name it .ply, which holds the points",
@@ -157,9 +158,8 @@ void write_outputs(const AlignSettings& settings, const Result& result, const Js
   if (settings.aligned.empty()) return;
   // Floats are written only where their rounding is far below what the scan resolves.
   const double tolerance = 1e-4 * result.voxel_size;
-  const std::vector<std::string> notes =
-      write_moved_output(source, settings.aligned, with_scale(result.target_from_source, source.scale), tolerance,
-                         bar.callback());
+  const std::vector<std::string> notes = write_moved_output(
+      source, settings.aligned, with_scale(result.target_from_source, source.scale), tolerance, bar.callback());
   bar.finish();
   for (const std::string& note : notes) std::cout << note << "\n";
 }

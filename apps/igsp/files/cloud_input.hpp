@@ -46,7 +46,8 @@ CloudInput sample_cloud(const std::filesystem::path& path, std::size_t max_point
 /// Which points of the file are not in the cloud, a line for the user each; mostly none.
 std::vector<std::string> left_out_of(const CloudInput& cloud);
 
-/// Settles where the scanner stood, from the points in memory; a viewpoint that was asked for is one of the file's frame.
+/// Settles where the scanner stood, from the points in memory; a viewpoint that was asked for is one of the file's
+/// frame.
 void settle_viewpoint(CloudInput& cloud, const ViewpointRequest& request);
 
 /// Voxel centroids of the whole file, in the file's frame, read in chunks: memory grows with the voxels only.
