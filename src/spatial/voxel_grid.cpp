@@ -12,7 +12,8 @@ namespace igsp {
 namespace {
 
 constexpr int bits_per_axis = 21;
-constexpr double max_cell = 1 << (bits_per_axis - 1);
+constexpr double max_cell = VoxelFilter::reach;
+static_assert(max_cell == 1 << (bits_per_axis - 1));
 // As fine as the coordinates themselves are in a cloud 2000 voxels across.
 constexpr double steps_per_voxel = 0x1p42;
 constexpr int carry_bits = 10;

@@ -11,10 +11,13 @@ namespace igsp {
 /// Voxel filter fed in chunks: one centroid per occupied voxel. Memory grows with the voxels, not with the points.
 class VoxelFilter {
  public:
+  /// Points may lie at most this many voxels away from the origin along an axis.
+  static constexpr double reach = 1 << 20;
+
   /// Voxel boundaries pass through `origin`. Throws InvalidArgument unless voxel_size is positive and finite.
   VoxelFilter(const Eigen::Vector3d& origin, double voxel_size);
 
-  /// Throws InvalidArgument for a point more than 2^20 voxels away from the origin.
+  /// Throws InvalidArgument for a point beyond `reach`.
   void add(PointView chunk);
 
   std::size_t size() const { return voxels_.size(); }

@@ -90,6 +90,17 @@ def test_more_points_than_are_kept_are_streamed(pip_command, laz, scans, tmp_pat
     assert len(laspy.read(tmp_path / "aligned.laz")) == len(laspy.read(laz))
 
 
+def test_transform_and_downsample_take_survey_formats(pip_command, laz, scans, tmp_path):
+    run(pip_command, "align", laz, scans / "park/station_0.ply", "-o", "aligned.laz", "--transform", "T.txt", cwd=tmp_path)
+    run(pip_command, "transform", laz, "--transform", "T.txt", "-o", "moved.laz", cwd=tmp_path)
+    assert (tmp_path / "moved.laz").read_bytes() == (tmp_path / "aligned.laz").read_bytes()
+    said = run(pip_command, "downsample", laz, "--voxel-size", "0.5", "-o", "thin.ply", cwd=tmp_path).stdout
+    cells = np.unique(np.floor(laspy.read(laz).xyz / 0.5), axis=0)  # no boundary is near a point by chance
+    thin = igsp.read_points(tmp_path / "thin.ply")
+    assert said == f"{len(laspy.read(laz))} points in {len(thin)} voxels of 0.5\n"
+    assert abs(len(thin) - len(cells)) <= 0.01 * len(cells)
+
+
 def test_formats_that_do_not_meet(pip_command, cpp_command, laz, scans, tmp_path):
     ply = scans / "park/station_1.ply"
     said = run(pip_command, "align", ply, laz, "-o", "x.laz", code=2, cwd=tmp_path).stderr

@@ -91,10 +91,7 @@ std::string contradicted(const CloudInput& cloud, std::string_view option, const
 std::vector<std::string> warnings_about(const CloudInput& source, const CloudInput& target) {
   std::vector<std::string> warnings;
   for (const CloudInput* cloud : {&source, &target}) {
-    if (!cloud->note.empty()) warnings.push_back(fmt::format("{}: {}", cloud->path.string(), cloud->note));
-    if (cloud->dropped == 0) continue;
-    warnings.push_back(fmt::format("{}: dropped {} of {} points with a coordinate that is not finite",
-                                   cloud->path.string(), cloud->dropped, cloud->dropped + cloud->total));
+    for (std::string& line : left_out_of(*cloud)) warnings.push_back(std::move(line));
   }
   constexpr double suspicious = 100.0;
   const auto extent_of = [](const CloudInput& cloud) {

@@ -34,8 +34,8 @@ void check_extent(const CloudInput& cloud) {
 
 }  // namespace
 
-CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points, std::string_view stage,
-                      const ProgressCallback& progress, const ReadOptions& options) {
+CloudInput sample_cloud(const std::filesystem::path& path, std::size_t max_points, std::string_view stage,
+                        const ProgressCallback& progress, const ReadOptions& options) {
   CloudFile reader(path, options);
   CloudInput cloud;
   cloud.path = path;
@@ -57,8 +57,24 @@ CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points,
   cloud.declared_viewpoint = reader.viewpoint();
   cloud.scans = reader.scans();
   cloud.note = reader.note();
+  return cloud;
+}
+
+CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points, std::string_view stage,
+                      const ProgressCallback& progress, const ReadOptions& options) {
+  CloudInput cloud = sample_cloud(path, max_points, stage, progress, options);
   check_extent(cloud);
   return cloud;
+}
+
+std::vector<std::string> left_out_of(const CloudInput& cloud) {
+  std::vector<std::string> lines;
+  if (!cloud.note.empty()) lines.push_back(fmt::format("{}: {}", cloud.path.string(), cloud.note));
+  if (cloud.dropped > 0) {
+    lines.push_back(fmt::format("{}: dropped {} of {} points with a coordinate that is not finite", cloud.path.string(),
+                                cloud.dropped, cloud.dropped + cloud.total));
+  }
+  return lines;
 }
 
 void settle_viewpoint(CloudInput& cloud, const ViewpointRequest& request) {

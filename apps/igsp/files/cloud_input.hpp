@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "igsp/io.hpp"
 #include "igsp/progress.hpp"
@@ -33,6 +34,13 @@ struct CloudInput {
 /// extent).
 CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points, std::string_view stage,
                       const ProgressCallback& progress, const ReadOptions& options = {});
+
+/// The same for any cloud, also an empty one or one without extent.
+CloudInput sample_cloud(const std::filesystem::path& path, std::size_t max_points, std::string_view stage,
+                        const ProgressCallback& progress, const ReadOptions& options = {});
+
+/// Which points of the file are not in the cloud, a line for the user each; mostly none.
+std::vector<std::string> left_out_of(const CloudInput& cloud);
 
 /// Settles where the scanner stood, from the points in memory.
 void settle_viewpoint(CloudInput& cloud, const ViewpointRequest& request);

@@ -90,7 +90,7 @@ std::vector<std::string> write_moved_output(const CloudInput& source, const fs::
     write_moved_foreign(source.path, output, target_from_source);
     return {};
   }
-  const double rounding = rounding_of_floats(source.bounds, target_from_source);
+  const double rounding = source.total > 0 ? rounding_of_floats(source.bounds, target_from_source) : 0.0;
   const bool floats = rounding <= tolerance;
   if (reads_foreign(source.path) || !io::keeps_properties(source.path, output)) {
     write_coordinates(source, output, target_from_source, floats, progress);
