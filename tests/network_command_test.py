@@ -189,6 +189,28 @@ class NetworkCommand(unittest.TestCase):
         self.assertEqual([row["scan"] for row in poses], [str(path) for path in self.scans])
         self.check_poses(poses)
 
+    def test_what_the_world_is(self):
+        self.network(*self.scans[:3], "-o", "survey", "--fix", "station_2")
+        poses = self.rows("poses.csv")
+        self.assertTrue((pose_of(poses[2]) == np.eye(4)).all())
+        self.check_poses(poses)
+        self.assertIn("FIX 2\n", (self.folder / "survey/network.g2o").read_text())
+        place = np.loadtxt(self.site / "station_1_to_0.txt")[:3, 3] + [1000, 2000, 0]
+        lines = ["scan,x,y,z,sigma,qw,qx,qy,qz,sigma_deg", "station_0.ply,1000,2000,0,0.01,1,0,0,0,0.1",
+                 f"station_1,{place[0]},{place[1]},{place[2]},0.01,,,,,"]
+        (self.folder / "control.csv").write_text("\n".join(lines) + "\n")
+        self.network(*self.scans[:3], "-o", "survey", "--control", "control.csv", "--levelled")
+        poses = self.rows("poses.csv")
+        self.check_poses(poses)
+        np.testing.assert_allclose(pose_of(poses[1])[:3, 3], place, atol=0.05)
+        self.assertEqual(pose_of(poses[1])[2, 2], 1)
+        everything = json.loads((self.folder / "survey/network.json").read_text())
+        self.assertLess(everything["scans"][1]["control_residual"], 0.05)
+        self.assertNotIn("FIX", (self.folder / "survey/network.g2o").read_text())
+        (self.folder / "control.csv").write_text("\n".join(["scan,x,y,z,sigma", "station_0,1,2,3,0.1"]))
+        run = self.network(*self.scans[:3], "-o", "survey", "--control", "control.csv")
+        self.assertIn("warning: the control of component 0 (3 scans) does not say where it lies", run.stderr)
+
     def test_which_pairs_are_tried(self):
         (self.folder / "pairs.csv").write_text("source,target\nstation_0.ply,station_1\nstation_2,station_1\n")
         self.network(*self.scans[:3], "-o", "survey", "--pairs", "pairs.csv")
@@ -212,6 +234,11 @@ class NetworkCommand(unittest.TestCase):
                      saying='v.csv: line 2, column 1 (scan): "other" is none of the scans given')
         (self.folder / "v.csv").write_text("scan,x,y\nother,0,0\n")
         self.refuses(*self.scans, "-o", "survey", "--viewpoints", "v.csv", code=3, saying="has no column z")
+        self.refuses(*self.scans, "-o", "survey", "--fix", "nobody", code=2, saying="--fix nobody: none of the scans")
+        (self.folder / "c.csv").write_text("scan,x,y,z,sigma\nstation_0,0,0,0,0\n")
+        self.refuses(*self.scans, "-o", "survey", "--control", "c.csv", code=3, saying="is not greater than 0")
+        self.refuses(*self.scans, "-o", "survey", "--control", "c.csv", "--fix", "station_0", code=2,
+                     saying="give one of them")
         self.refuses(*self.scans, "-o", "survey", "--pairs", "automatic", code=3, saying="automatic")
         (self.folder / "p.csv").write_text("source,target\nstation_0,station_0\n")
         self.refuses(*self.scans, "-o", "survey", "--pairs", "p.csv", code=3, saying="the scan is paired with itself")

@@ -240,6 +240,7 @@ struct Layout<NetworkScan> {
       Field{"covariance", &NetworkScan::covariance},
       Field{"centre", &NetworkScan::centre},
       Field{"points", &NetworkScan::points},
+      Field{"control_residual", &NetworkScan::control_residual},
   };
 };
 
@@ -285,6 +286,7 @@ struct Layout<Network> {
       Field{"components", &Network::components},
       Field{"bundle_error", &Network::bundle_error},
       Field{"voxel_size", &Network::voxel_size},
+      Field{"warnings", &Network::warnings},
   };
 };
 

@@ -118,6 +118,23 @@ def test_which_pairs_are_tried(site, answer):
         igsp.network(site, pairs=[(1, 9)], **FAST)
 
 
+def test_what_the_world_is(site, answer):
+    fixed = igsp.network(site, fixed_scan=2, **FAST)
+    np.testing.assert_array_equal(fixed.poses[2], np.eye(4))
+    place = site[0].world_from_scanner + [[0, 0, 0, 100], [0, 0, 0, 50], [0, 0, 0, 5], [0, 0, 0, 0]]
+    control = [igsp.Control(0, place[:3, 3], 0.01, place[:3, :3], 1e-3)]
+    moved = igsp.network(site, control=control, dof=4, **FAST)
+    np.testing.assert_allclose(moved.poses[0], place, atol=1e-3)
+    assert moved.scans[0].control_residual < 1e-3 and moved.scans[1].control_residual is None
+    lost = igsp.network(site, control=[igsp.Control(1, [0, 0, 0], 0.1)], **FAST)
+    np.testing.assert_array_equal(lost.poses, answer.poses)
+    assert "does not say where it lies" in lost.warnings[0]
+    with pytest.raises(ValueError, match="control of scan 0: position has shape"):
+        igsp.network(site, control=[igsp.Control(0, [0, 0], 0.1)], **FAST)
+    with pytest.raises(ValueError, match="control of scan 9; there are 4 scans"):
+        igsp.network(site, control=[igsp.Control(9, [0, 0, 0], 0.1)], **FAST)
+
+
 def test_progress_stops_and_errors_pass(site):
     stages = []
     igsp.network(site[:2], progress=lambda stage, fraction: stages.append((stage, fraction)), **FAST)

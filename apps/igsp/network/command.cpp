@@ -24,7 +24,9 @@ namespace fs = std::filesystem;
 
 struct NetworkSettings {
   std::vector<fs::path> scans;
-  fs::path folder, viewpoints;
+  fs::path folder, viewpoints, control;
+  std::string fixed_scan;
+  bool levelled = false;
   std::string pairs = "all";  // or "auto", or a file
   ReadOptions read;
   std::int64_t max_points = 20'000'000;
@@ -48,6 +50,15 @@ ScanReading reading_of(const NetworkSettings& settings) {
   reading.read = settings.read;
   reading.max_points = static_cast<std::size_t>(settings.max_points);
   return reading;
+}
+
+void choose_world(NetworkOptions& options, const NetworkSettings& settings, const std::vector<fs::path>& files) {
+  if (settings.levelled) options.pair.degrees_of_freedom = 4;
+  if (!settings.fixed_scan.empty() && !settings.control.empty()) {
+    throw InvalidArgument("--fix and --control both say what the world is: give one of them");
+  }
+  if (!settings.fixed_scan.empty()) options.fixed_scan = scan_named(settings.fixed_scan, files, "--fix");
+  if (!settings.control.empty()) options.control = read_control(settings.control, files);
 }
 
 void choose_pairs(NetworkOptions& options, const std::string& pairs, const std::vector<fs::path>& files) {
@@ -96,6 +107,7 @@ int run_network(const NetworkSettings& settings) {
   }
   const ScanReading reading = reading_of(settings);
   choose_pairs(options, settings.pairs, reading.files);
+  choose_world(options, settings, reading.files);
   create_folder(settings.folder);
   ProgressBar bar(!settings.quiet);
   const ProgressCallback progress = bar.callback();
@@ -111,6 +123,9 @@ int run_network(const NetworkSettings& settings) {
   stop_if_interrupted();
   bar.finish();
   for (std::size_t i = 0; i < network.scans.size(); ++i) network.scans[i].name = reading.files[i].string();
+  for (const std::string& warning : network.warnings) {
+    if (!settings.quiet) std::cerr << "igsp: warning: " << warning << "\n";
+  }
   write_outputs(settings.folder, network, options, drawn);
   std::cout << network_summary(network);
   return exit_code(network);
@@ -120,7 +135,8 @@ constexpr const char* notes =
     "SCANS are files, or folders for all point clouds in them (but .txt and .csv must be named). The folder of -o "
     "gets\n"
     "  poses.csv     scan,component,qw,qx,qy,qz,tx,ty,tz: world_from_scan; every component has a world of its own,\n"
-    "                the frame of its first scan; a scan that could not be placed is a component of its own\n"
+    "                the frame of its first scan (but see --fix, --control); a scan that could not be placed is a "
+    "component of its own\n"
     "  links.csv     every pair that was tried: used, unconfirmed (in no loop), rejected or not_registered, and why\n"
     "  report.html   to look at: map, links, stations; one file, without a network\n"
     "  network.json  all of it, with covariances; network.g2o, poses.tum: for other programs\n"
@@ -145,6 +161,15 @@ void add_network_command(CLI::App& app, Command& command) {
                    wrapped("CSV, scan,x,y,z: where scanners stood, each in its scan's own frame; the space that they "
                            "saw through is evidence against wrong links"))
       ->type_name("FILE");
+  network->add_option("--fix", settings->fixed_scan, "scan whose frame is the world; default the first")
+      ->type_name("SCAN");
+  network
+      ->add_option("--control", settings->control,
+                   wrapped("CSV, scan,x,y,z,sigma and, where known, qw,qx,qy,qz,sigma_deg: where scanners stood in the "
+                           "world, as soft priors with these standard deviations"))
+      ->type_name("FILE");
+  network->add_flag("--levelled", settings->levelled,
+                    wrapped("the scans are levelled: z is up in all of them and in the world; as --dof 4"));
   network
       ->add_option(
           "--pairs", settings->pairs,
