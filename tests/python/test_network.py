@@ -90,6 +90,16 @@ def test_scans_of_one_file_are_inputs_of_their_own(site, tmp_path, pip_command):
     assert [row["scan"] for row in rows] == names
     written = [[float(row[name]) for name in ("tx", "ty", "tz")] for row in rows]
     np.testing.assert_array_equal(written, network.poses[:, :3, 3])
+    moved = tmp_path / "moved"
+    run = subprocess.run(
+        [pip_command, "network", *files, "-o", tmp_path / "survey", "--target-points", "3000", "--write", moved],
+        capture_output=True,
+        text=True,
+    )
+    assert run.returncode == 0 and sorted(path.name for path in moved.iterdir()) == ["last.ptx", "site.e57"], run.stderr
+    for i, name in enumerate(["site.e57#0", "site.e57#1", "site.e57#2", "last.ptx"]):
+        before = igsp.transform_points(igsp.read_points(names[i]), network.poses[i])
+        np.testing.assert_allclose(igsp.read_points(moved / name), before, atol=1e-5)
     one = igsp.formats.read_cloud(names[1])
     np.testing.assert_array_equal(igsp.read_points(names[1]), one.points)
     assert one.scan_count == 1 and len(igsp.read_points(files[0])) > 2 * len(one.points)

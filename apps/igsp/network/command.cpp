@@ -7,6 +7,7 @@
 #include "files/output_file.hpp"
 #include "igsp/errors.hpp"
 #include "network/inputs.hpp"
+#include "network/moved_scans.hpp"
 #include "network/outputs.hpp"
 #include "network/page.hpp"
 #include "network/store.hpp"
@@ -25,6 +26,7 @@ namespace fs = std::filesystem;
 struct NetworkSettings {
   std::vector<fs::path> scans;
   fs::path folder, viewpoints, control;
+  fs::path moved, merged;
   std::string fixed_scan;
   bool levelled = false;
   std::string pairs = "all";  // or "auto", or a file
@@ -77,6 +79,18 @@ void write_outputs(const fs::path& folder, const Network& network, const Network
   write_text(folder / "poses.csv", poses_csv(network));
 }
 
+// What the answer is for; after the answer itself, which a full disk must not take along.
+void write_clouds(const NetworkSettings& settings, const Network& network, const ScanReading& reading,
+                  const ProgressCallback& progress) {
+  if (network.components.empty() || network.components.front().size() < 2) return;
+  if (!settings.moved.empty()) {
+    for (const std::string& line : write_moved_scans(settings.moved, network, reading, progress)) {
+      if (!settings.quiet) std::cerr << "igsp: warning: " << line << "\n";
+    }
+  }
+  if (!settings.merged.empty()) write_merged(settings.merged, network, reading, progress);
+}
+
 int exit_code(const Network& network) {
   const bool all_read =
       std::ranges::all_of(network.scans, [](const NetworkScan& scan) { return scan.problem.empty(); });
@@ -108,6 +122,11 @@ int run_network(const NetworkSettings& settings) {
   const ScanReading reading = reading_of(settings);
   choose_pairs(options, settings.pairs, reading.files);
   choose_world(options, settings, reading.files);
+  if (!settings.moved.empty()) check_moved_scans(settings.moved, reading);
+  if (!settings.merged.empty()) {
+    format_of(settings.merged);
+    check_writable(settings.merged);
+  }
   create_folder(settings.folder);
   ProgressBar bar(!settings.quiet);
   const ProgressCallback progress = bar.callback();
@@ -127,6 +146,8 @@ int run_network(const NetworkSettings& settings) {
     if (!settings.quiet) std::cerr << "igsp: warning: " << warning << "\n";
   }
   write_outputs(settings.folder, network, options, drawn);
+  write_clouds(settings, network, reading, progress);
+  bar.finish();
   std::cout << network_summary(network);
   return exit_code(network);
 }
@@ -160,6 +181,15 @@ void add_network_command(CLI::App& app, Command& command) {
       ->add_option("--viewpoints", settings->viewpoints,
                    wrapped("CSV, scan,x,y,z: where scanners stood, each in its scan's own frame; the space that they "
                            "saw through is evidence against wrong links"))
+      ->type_name("FILE");
+  network
+      ->add_option("--write", settings->moved,
+                   wrapped("folder for every scan moved into its frame, in its own format with all that belongs to its "
+                           "points; those of other frames in component_1, ... in it"))
+      ->type_name("DIR");
+  network
+      ->add_option("--merged", settings->merged,
+                   wrapped("one cloud of all scans in the largest frame, a point per half voxel: .ply, .pcd or text"))
       ->type_name("FILE");
   network->add_option("--fix", settings->fixed_scan, "scan whose frame is the world; default the first")
       ->type_name("SCAN");
