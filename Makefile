@@ -4,7 +4,7 @@ jobs := $(shell nproc)
 igsp := build/release/bin/igsp
 demo := build/demo
 
-.PHONY: all build setup demo test deb docs wheel bench bench-scrambles bench-peers calibrate paper asan tsan fuzz mutants tidy format install clean
+.PHONY: all build setup demo test deb docs wheel wheels bench bench-scrambles bench-peers calibrate paper asan tsan fuzz mutants tidy format install clean
 
 all: build
 
@@ -34,6 +34,12 @@ test: build
 wheel: setup
 	/usr/bin/python3 -m venv build/wheel
 	CXX=c++ build/wheel/bin/pip wheel . --no-deps --wheel-dir dist  # the compiler of the presets: ccache knows its objects
+
+# The source distribution and a wheel for each Python of this machine, into dist/: see scripts/wheels.py.
+wheels: setup
+	cmake --preset release
+	cmake --build --preset release --target igsp_app
+	CXX=c++ /usr/bin/python3 scripts/wheels.py build/wheels dist build/release/bin/igsp
 
 asan: test_packages += clang-14 libclang-rt-14-dev
 asan tsan:

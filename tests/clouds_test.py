@@ -1,4 +1,4 @@
-"""What makes one cloud out of another: igsp transform and igsp downsample, on files of every format.
+"""What makes one cloud out of another: igsp transform, convert and downsample, on files of every format.
 usage: clouds_test.py IGSP [unittest arguments]
 """
 import os
@@ -134,6 +134,103 @@ class Transform(CloudTest):
         self.assertFalse((self.folder / "b.ply").exists())
 
 
+class Convert(CloudTest):
+    def full_cloud(self, count: int) -> dict[str, np.ndarray]:
+        random = np.random.default_rng(12)
+        extra = {axis: random.normal(size=count).astype("f4") for axis in ("nx", "ny", "nz")}
+        extra |= {colour: random.integers(0, 256, count).astype("u1") for colour in ("red", "green", "blue")}
+        extra |= {"intensity": random.integers(0, 65536, count).astype("u2"), "gps_time": random.normal(size=count)}
+        self.write_ply("a.ply", random.normal(size=(count, 3)), extra)
+        return extra
+
+    def test_there_and_back_every_bit_stays(self):
+        """Through each format and encoding, across chunks."""
+        self.full_cloud(CHUNK + 7)
+        before = self.read_ply("a.ply")
+        for name, encoding in [("b.pcd", "ascii"), ("b.pcd", "binary"), ("b.pcd", "compressed"), ("b.ply", "ascii")]:
+            self.igsp("convert", "a.ply", "-o", name, "--encoding", encoding)
+            self.igsp("convert", name, "-o", "c.ply", "--encoding", "binary")
+            after = self.read_ply("c.ply")
+            self.assertEqual(after.dtype.names, before.dtype.names, (name, encoding))
+            self.assertEqual(after.tobytes(), before.tobytes(), (name, encoding))
+
+    def test_text_keeps_every_value(self):
+        self.full_cloud(1000)
+        before = self.read_ply("a.ply")
+        for name in ("b.csv", "b.xyz"):
+            self.igsp("convert", "a.ply", "-o", name)
+            self.igsp("convert", name, "-o", "c.ply")
+            after = self.read_ply("c.ply")
+            self.assertEqual(after.dtype.names, before.dtype.names, name)
+            for field in before.dtype.names:
+                expected = before[field] if before[field].dtype != "f4" else [float(str(v)) for v in before[field]]
+                np.testing.assert_array_equal(after[field], expected, field)
+
+    def test_pcd_has_the_names_that_its_programs_expect(self):
+        self.full_cloud(10)
+        self.igsp("convert", "a.ply", "-o", "b.pcd")
+        header, body = (self.folder / "b.pcd").read_bytes().split(b"DATA binary\n")
+        self.assertIn(b"FIELDS x y z normal_x normal_y normal_z rgb intensity gps_time\n", header)
+        self.assertIn(b"TYPE F F F F F F F U F\n", header)
+        table = np.frombuffer(body, [("xyz", "<f8", 3), ("n", "<f4", 3), ("rgb", "<u4"), ("i", "<u2"), ("t", "<f8")])
+        red, green, blue = (self.read_ply("a.ply")[colour].astype("u4") for colour in ("red", "green", "blue"))
+        np.testing.assert_array_equal(table["rgb"], red << 16 | green << 8 | blue)
+
+    def test_colours_with_alpha_are_no_float(self):
+        """Bits that a float would take for no number, and change."""
+        header = "VERSION 0.7\nFIELDS x y z rgba\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
+        rows = np.array([(1, 2, 3, 0xFF800001), (4, 5, 6, 0xFFBF1234)], "<f4,<f4,<f4,<u4")
+        (self.folder / "a.pcd").write_bytes((header + "POINTS 2\nDATA binary\n").encode() + rows.tobytes())
+        self.igsp("convert", "a.pcd", "-o", "b.ply")
+        table = self.read_ply("b.ply")
+        self.assertEqual(table.dtype.names[3:], ("red", "green", "blue", "alpha"))
+        colours = table[["red", "green", "blue", "alpha"]].tolist()
+        self.assertEqual(colours, [(0x80, 0, 1, 255), (0xBF, 0x12, 0x34, 255)])
+        self.igsp("convert", "b.ply", "-o", "c.pcd")
+        self.assertEqual((self.folder / "c.pcd").read_bytes().split(b"DATA binary\n")[1], rows.tobytes())
+
+    def test_what_has_no_place_is_said(self):
+        lines = ["ply", "format ascii 1.0", "element vertex 3", *(f"property double {axis}" for axis in "xyz"),
+                 "property list uchar int seen", "element face 1", "property list uchar int vertex_indices",
+                 "end_header", "0 0 0 2 7 8", "1 0 0 0", "nan 0 0 1 5", "3 0 1 2"]
+        (self.folder / "a.ply").write_text("\n".join(lines) + "\n")
+        done = self.igsp("convert", "a.ply", "-o", "b.csv")
+        self.assertEqual(done.stdout, "b.csv has no place for seen, 1 x face\n")
+        self.assertIn("dropped 1 of 3 points", done.stderr)
+        self.assertEqual((self.folder / "b.csv").read_text(), "x,y,z\n0,0,0\n1,0,0\n")
+        self.igsp("convert", "a.ply", "-o", "c.ply")  # the same format: a copy
+        self.assertEqual((self.folder / "c.ply").read_bytes(), (self.folder / "a.ply").read_bytes())
+
+    def test_words_in_columns_and_names_with_blanks(self):
+        text = "Point;Easting [m];Northing [m];Height [m];Intensity [a.u.]\nA;1,5;2;3;7\nB;4;5;6;\n"
+        (self.folder / "a.csv").write_text(text)
+        done = self.igsp("convert", "a.csv", "-o", "b.pcd", "--encoding", "ascii")
+        self.assertEqual(done.stdout, "b.pcd has no place for Point\n")
+        header, body = (self.folder / "b.pcd").read_text().split("DATA ascii\n")
+        self.assertIn("FIELDS x y z Intensity\n", header)
+        self.assertEqual(body, "1.5 2 3 7\n4 5 6 nan\n")
+
+    def test_integers_beyond_a_double_are_refused(self):
+        header = "VERSION 0.7\nFIELDS x y z id\nSIZE 4 4 4 8\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 1\nHEIGHT 1\n"
+        for value, code in [(2**53, 0), (2**60, 3)]:
+            row = np.array([(1, 2, 3, value)], "<f4,<f4,<f4,<u8").tobytes()
+            (self.folder / "a.pcd").write_bytes((header + "POINTS 1\nDATA binary\n").encode() + row)
+            done = self.igsp("convert", "a.pcd", "-o", "b.csv", code=code)
+        self.assertIn("beyond 2^53", done.stderr)
+        self.assertIn(str(2**53), (self.folder / "b.csv").read_text())
+
+    def test_mistakes(self):
+        self.write_ply("a.ply", np.ones((3, 3)))
+        for arguments, code, saying in [(["-o", "b.ply", "--encoding", "compressed"], 2, "--encoding compressed"),
+                                        (["-o", "b.xyz", "--encoding", "ascii"], 2, "--encoding"),
+                                        (["-o", "a.ply"], 2, "same file"), (["-o", "b.laz"], 3, "b.laz")]:
+            self.assertIn(saying, self.igsp("convert", "a.ply", *arguments, code=code).stderr)
+        cut = (self.folder / "a.ply").read_bytes()[:-1]
+        (self.folder / "cut.ply").write_bytes(cut)
+        self.igsp("convert", "cut.ply", "-o", "b.pcd", code=3)
+        self.assertFalse((self.folder / "b.pcd").exists())
+
+
 def centroids(points: np.ndarray, voxel_size: float) -> list[list[float]]:
     """Exactly, as fractions, save for the steps in which the filter counts and the last rounding."""
     voxels: dict[tuple, list] = {}
@@ -203,13 +300,14 @@ print(os.waitstatus_to_exitcode(status), usage.ru_maxrss * 1024)
 
 
 class Memory(CloudTest):
-    """Both stream: a third of what the coordinates need as doubles suffices."""
+    """All stream: a third of what the coordinates need as doubles suffices."""
 
     def test_peak(self):
         count = 5_000_000
         self.write_ply("a.ply", np.random.default_rng(10).uniform(0, 10, (count, 3)), kind="f4")
         self.save_motion(rigid(11))
-        for command in (["transform", "a.ply", "--transform", "T.txt", "-o", "b.ply"],
+        for command in (["convert", "a.ply", "-o", "b.pcd"],
+                        ["transform", "a.ply", "--transform", "T.txt", "-o", "b.ply"],
                         ["downsample", "a.ply", "--voxel-size", "1", "-o", "b.ply"]):
             done = subprocess.run([sys.executable, "-c", PEAK, IGSP, *command, "--quiet"], cwd=self.folder, check=True,
                                   capture_output=True, text=True)

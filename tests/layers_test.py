@@ -29,8 +29,8 @@ ALLOWED = {
 APPS_ALLOWED = REGISTRATION | {"diagnosis", "network", "io", "config", "archive", "simulation"}
 # The rooms of the command, in apps/igsp/: a command's room may use these below it and itself; command_line.cpp, all.
 SHARED_ROOMS = {"shell": set(), "files": {"shell"}, "report": {"shell", "files"}}
-COMMAND_ROOMS = {"align", "benchmark", "completion", "downsample", "evaluate", "network", "options", "simulate",
-                 "transform"}
+COMMAND_ROOMS = {"align", "benchmark", "completion", "convert", "downsample", "evaluate", "network", "options",
+                 "simulate", "transform"}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 FORBIDDEN = re.compile(

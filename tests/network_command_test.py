@@ -189,6 +189,72 @@ class NetworkCommand(unittest.TestCase):
         self.assertEqual([row["scan"] for row in poses], [str(path) for path in self.scans])
         self.check_poses(poses)
 
+    def test_what_the_world_is(self):
+        self.network(*self.scans[:3], "-o", "survey", "--fix", "station_2")
+        poses = self.rows("poses.csv")
+        self.assertTrue((pose_of(poses[2]) == np.eye(4)).all())
+        self.check_poses(poses)
+        self.assertIn("FIX 2\n", (self.folder / "survey/network.g2o").read_text())
+        place = np.loadtxt(self.site / "station_1_to_0.txt")[:3, 3] + [1000, 2000, 0]
+        lines = ["scan,x,y,z,sigma,qw,qx,qy,qz,sigma_deg", "station_0.ply,1000,2000,0,0.01,1,0,0,0,0.1",
+                 f"station_1,{place[0]},{place[1]},{place[2]},0.01,,,,,"]
+        (self.folder / "control.csv").write_text("\n".join(lines) + "\n")
+        self.network(*self.scans[:3], "-o", "survey", "--control", "control.csv", "--levelled")
+        poses = self.rows("poses.csv")
+        self.check_poses(poses)
+        np.testing.assert_allclose(pose_of(poses[1])[:3, 3], place, atol=0.05)
+        self.assertEqual(pose_of(poses[1])[2, 2], 1)
+        everything = json.loads((self.folder / "survey/network.json").read_text())
+        self.assertLess(everything["scans"][1]["control_residual"], 0.05)
+        self.assertNotIn("FIX", (self.folder / "survey/network.g2o").read_text())
+        (self.folder / "control.csv").write_text("\n".join(["scan,x,y,z,sigma", "station_0,1,2,3,0.1"]))
+        run = self.network(*self.scans[:3], "-o", "survey", "--control", "control.csv")
+        self.assertIn("warning: the control of component 0 (3 scans) does not say where it lies", run.stderr)
+
+    def test_moved_scans_and_the_merged_cloud(self):
+        text = self.folder / "colours.xyz"
+        points = self.points_of(self.scans[1])
+        text.write_text("".join(f"{x} {y} {z} {i % 256} tree\n" for i, (x, y, z) in enumerate(points)))
+        lone = self.folder / "lone.xyz"
+        lone.write_text("".join(f"{x} {y} {z}\n" for x, y, z in np.random.default_rng(0).uniform(size=(2000, 3))))
+        self.network(self.scans[0], text, lone, self.scans[2], "-o", "survey", "--write", "aligned", "--merged", "all.ply",
+                     code=1)
+        self.assertEqual(sorted(path.name for path in (self.folder / "aligned").iterdir()),
+                         ["colours.xyz", "station_0.ply", "station_2.ply"])
+        poses = self.rows("poses.csv")
+        world = []
+        for row, path, source in [(poses[0], "station_0.ply", self.points_of(self.scans[0])),
+                                  (poses[3], "station_2.ply", self.points_of(self.scans[2]))]:
+            pose = pose_of(row)
+            world.append(source @ pose[:3, :3].T + pose[:3, 3])
+            np.testing.assert_allclose(self.points_of(self.folder / "aligned" / path), world[-1], atol=1e-3)
+        lines = [line.split() for line in (self.folder / "aligned/colours.xyz").read_text().splitlines()]
+        self.assertEqual([line[3:] for line in lines[:300]], [[str(i % 256), "tree"] for i in range(300)])
+        world.append(np.array([line[:3] for line in lines], float))
+        pose = pose_of(poses[1])
+        np.testing.assert_allclose(world[-1], points @ pose[:3, :3].T + pose[:3, 3], atol=1e-3)
+        merged = self.points_of(self.folder / "all.ply")
+        half = json.loads((self.folder / "survey/network.json").read_text())["voxel_size"] / 2
+        everything = np.concatenate(world)
+        centre = np.array(json.loads((self.folder / "survey/network.json").read_text())["scans"][0]["centre"])
+        cells = {tuple(cell) for cell in np.floor((everything - centre) / half).astype(int)}
+        self.assertAlmostEqual(len(merged), len(cells), delta=0.002 * len(cells))
+        self.assertLess(np.abs(merged.mean(0) - [np.mean([(np.array(c) + 0.5) * half + centre for c in cells], 0)]).max(),
+                        half)
+        self.refuses(self.scans[0], self.scans[1], "-o", "survey", "--write", str(self.site), code=2,
+                     saying="would be overwritten; choose another folder")
+        self.refuses(self.scans[0], self.scans[1], "-o", "survey", "--merged", "all.laz", code=3, saying="all.laz")
+
+    @staticmethod
+    def points_of(path):
+        content = path.read_bytes()
+        end = content.index(b"end_header\n") + 11
+        head = content[:end].decode()
+        kind = "<f8" if "property double x" in head or "property float64 x" in head else "<f4"
+        count = next(int(line.split()[2]) for line in head.splitlines() if line.startswith("element vertex"))
+        return np.frombuffer(content, np.dtype([(axis, kind) for axis in "xyz"]), count, end).view(kind).reshape(-1, 3
+                                                                                                                 ).astype(float)
+
     def test_which_pairs_are_tried(self):
         (self.folder / "pairs.csv").write_text("source,target\nstation_0.ply,station_1\nstation_2,station_1\n")
         self.network(*self.scans[:3], "-o", "survey", "--pairs", "pairs.csv")
@@ -212,6 +278,11 @@ class NetworkCommand(unittest.TestCase):
                      saying='v.csv: line 2, column 1 (scan): "other" is none of the scans given')
         (self.folder / "v.csv").write_text("scan,x,y\nother,0,0\n")
         self.refuses(*self.scans, "-o", "survey", "--viewpoints", "v.csv", code=3, saying="has no column z")
+        self.refuses(*self.scans, "-o", "survey", "--fix", "nobody", code=2, saying="--fix nobody: none of the scans")
+        (self.folder / "c.csv").write_text("scan,x,y,z,sigma\nstation_0,0,0,0,0\n")
+        self.refuses(*self.scans, "-o", "survey", "--control", "c.csv", code=3, saying="is not greater than 0")
+        self.refuses(*self.scans, "-o", "survey", "--control", "c.csv", "--fix", "station_0", code=2,
+                     saying="give one of them")
         self.refuses(*self.scans, "-o", "survey", "--pairs", "automatic", code=3, saying="automatic")
         (self.folder / "p.csv").write_text("source,target\nstation_0,station_0\n")
         self.refuses(*self.scans, "-o", "survey", "--pairs", "p.csv", code=3, saying="the scan is paired with itself")

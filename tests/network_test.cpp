@@ -157,6 +157,63 @@ TEST(Network, OnlyListedPairsAreTried) {
   }
 }
 
+TEST(Network, FixedScanIsTheWorld) {
+  const auto site = park(3, 4);
+  const std::vector<Scan> scans = views(site);
+  NetworkOptions options = fast_options();
+  const Network first = register_network(std::span<const Scan>(scans), options);
+  options.fixed_scan = 2;
+  const Network network = register_network(std::span<const Scan>(scans), options);
+  EXPECT_EQ(network.scans[2].world_from_scan.matrix(), Transformation::Identity().matrix());
+  EXPECT_EQ(network.scans[2].covariance.norm(), 0);
+  EXPECT_GT(network.scans[0].covariance.norm(), 0);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Transformation expected = first.scans[2].world_from_scan.inverse() * first.scans[i].world_from_scan;
+    EXPECT_LT((network.scans[i].world_from_scan.matrix() - expected.matrix()).norm(), 1e-3) << i;
+  }
+}
+
+TEST(Network, ControlPutsAllScansIntoItsWorldAndSharesItsErrors) {
+  const auto site = park(3, 4);
+  const std::vector<Scan> scans = views(site);
+  NetworkOptions options = fast_options();
+  Transformation world = Transformation::Identity();
+  world.linear() = Eigen::AngleAxisd(1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  world.translation() = Eigen::Vector3d(4000, 5000, 100);
+  for (const std::size_t i : {0, 1, 2}) {
+    options.control.push_back({i, world * site[i].world_from_scanner.translation(), 0.01, {}, 0});
+  }
+  options.control.push_back(
+      {3, world * (site[3].world_from_scanner.translation() + Eigen::Vector3d(0, 0, 5)), 50, {}, 0});
+  const Network network = register_network(std::span<const Scan>(scans), options);
+  EXPECT_TRUE(network.warnings.empty());
+  for (std::size_t i = 0; i < 4; ++i) {
+    const PoseError error =
+        pose_error(network.scans[i].world_from_scan, world * site[i].world_from_scanner, Eigen::Vector3d::Zero());
+    EXPECT_LT(error.rotation_rad, 0.01) << i;
+    EXPECT_LT(error.centroid_displacement, 0.1) << i;
+    EXPECT_GT(network.scans[i].covariance.diagonal().minCoeff(), 0);
+    EXPECT_LT((network.scans[i].covariance.bottomRightCorner<3, 3>().trace()), 0.01);
+  }
+  EXPECT_LT(*network.scans[0].control_residual, 0.05);
+  EXPECT_NEAR(*network.scans[3].control_residual, 5, 0.1);
+}
+
+TEST(Network, LevelledScansStayLevelled) {
+  const auto site = park(3, 4);
+  const std::vector<Scan> scans = views(site);
+  NetworkOptions options = fast_options();
+  options.pair.degrees_of_freedom = 4;
+  const Network network = register_network(std::span<const Scan>(scans), options);
+  ASSERT_EQ(network.components.size(), 1u);
+  expect_right(network, network.components[0], site, 0);
+  for (std::size_t i = 1; i < 4; ++i) {
+    EXPECT_EQ(network.scans[i].world_from_scan.linear()(2, 2), 1.0);
+    EXPECT_GT(network.scans[i].covariance(2, 2), 0);
+    EXPECT_LT((network.scans[i].covariance.topLeftCorner<2, 2>().norm()), 1e-20);
+  }
+}
+
 TEST(Network, SourceThatThrowsIsThatScansProblem) {
   const auto site = park(3, 3);
   const NetworkOptions options = fast_options();

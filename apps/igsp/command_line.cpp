@@ -143,6 +143,7 @@ int run(int argc, char** argv, ForeignFormats formats) {
   add_benchmark_command(app, command);
   add_simulate_command(app, command);
   add_info_command(app, command);
+  add_convert_command(app, command);
   add_transform_command(app, command);
   add_downsample_command(app, command);
   add_options_command(app, command);

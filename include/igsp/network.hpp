@@ -28,8 +28,20 @@ enum class PairRule {
   listed,     ///< those of NetworkOptions::listed_pairs
 };
 
+/// Where a scan is known to lie in the world, as a soft prior.
+struct ControlPose {
+  std::size_t scan = 0;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< in the world: of the scanner, where it is unknown of the
+                                                       ///< origin of the scan's frame
+  double position_sigma = 0;                           ///< per axis, > 0 [units of the cloud]
+  std::optional<Eigen::Quaterniond> rotation;          ///< world_from_scan; none: only the position is known
+  double rotation_sigma_rad = 0;                       ///< per axis, > 0 where there is a rotation
+};
+
 struct NetworkOptions {
-  Options pair;  ///< of the features and of every pair; its voxel size, if set, is that of all scans
+  /// Of the features and of every pair; its voxel size, if set, is that of all scans. With four degrees of freedom the
+  /// scans are levelled and stay so: z is up in all of them and in the world.
+  Options pair;
 
   /// A link in no loop joins scans only with at least this confidence, [0.5, 1] (where both viewpoints are known and no
   /// scan stands in what the other scanner saw through, being registered is enough), ...
@@ -37,6 +49,12 @@ struct NetworkOptions {
 
   /// ... and at least so many agreeing matches: a bare room fits every other one like it, on few matches.
   std::size_t min_unconfirmed_matches = 30;
+
+  std::optional<std::size_t> fixed_scan;  ///< its frame is the world of its component; none: that of the first scan
+
+  /// A component's world is that of its control, if this says where that is: a pose, or three positions that lie on no
+  /// line (of levelled scans two).
+  std::vector<ControlPose> control;
 
   PairRule pairs = PairRule::all;
   std::vector<ScanPair> listed_pairs;  ///< in any order, either scan first
@@ -84,21 +102,26 @@ struct NetworkScan {
   std::size_t component = 0;  ///< index into Network::components
   Transformation world_from_scan = Transformation::Identity();
   /// Of world_from_scan: a small motion on the left, in the world, rotation about x, y, z through `centre` [rad], then
-  /// translation [units of the cloud]. 0 for the scan whose frame is the component's world.
+  /// translation [units of the cloud]. 0 for the scan whose frame is the component's world; against the control where
+  /// there is one.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< centroid of its points, in the world
   std::size_t points = 0;                            ///< as given
+  /// Distance between its control's position and where the network has it [units of the cloud]; none without control,
+  /// or where that does not place its component.
+  std::optional<double> control_residual;
 };
 
 /// What `register_network` answers. Scans that do not connect stay in components of their own; a component's world is
-/// the frame of its first scan.
+/// the frame of its first scan unless the options say otherwise.
 struct Network {
   std::vector<NetworkScan> scans;                    ///< in the order given
   std::vector<NetworkLink> links;                    ///< all pairs that were tried
   std::vector<NetworkCycle> cycles;                  ///< all loops of three registered links
   std::vector<std::vector<std::size_t>> components;  ///< scans, ascending; the largest component first
-  double bundle_error = 0;  ///< RMS of the residuals of the links that are used [units of the cloud]
-  double voxel_size = 0;    ///< [units of the cloud]
+  double bundle_error = 0;            ///< RMS of the residuals of the links that are used [units of the cloud]
+  double voxel_size = 0;              ///< [units of the cloud]
+  std::vector<std::string> warnings;  ///< what of the options could not be followed, a sentence each
 };
 
 /// Hands out the features of scan i; called from the thread that called the library. What it throws (except Cancelled)

@@ -40,13 +40,14 @@ from igsp.files import (
     write_result,
     write_transformation,
 )
-from igsp.many_scans import network
+from igsp.many_scans import Control, network
 from igsp.registration import align, align_similarity, diagnose, extract_features, options
 from igsp.viewpoints import find_viewpoint
 
 __all__ = [
     "Cancelled",
     "CloudSummary",
+    "Control",
     "Diagnosis",
     "Evidence",
     "Features",

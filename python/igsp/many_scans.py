@@ -7,8 +7,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+import numpy.typing as npt
+
 from igsp import _core
 from igsp._core import Features, Network
+from igsp.arrays import Points, matrix_array
 from igsp.registration import Progress, plain_options, progress_function
 from igsp.viewpoints import Viewpoint, load, settle
 
@@ -21,11 +25,29 @@ Pairs = Literal["all", "auto"] | Iterable[tuple[int, int]]
 Viewpoints = Sequence[Viewpoint] | Mapping[str, Viewpoint]
 
 
+@dataclass(frozen=True)
+class Control:
+    """Where a scan is known to lie in the world, as a soft prior for `network`.
+
+    `scan`: its index. `position`: (3,) of the scanner in the world, where that is unknown of the origin of the scan's
+        frame. `sigma`: standard deviation of the position per axis [units of the cloud], > 0.
+    `rotation`: (3, 3) of world_from_scan, if known, with its standard deviation `rotation_sigma` per axis [rad], > 0.
+    """
+
+    scan: int
+    position: npt.ArrayLike
+    sigma: float
+    rotation: npt.ArrayLike | None = None
+    rotation_sigma: float = 0.0
+
+
 def network(
     scans: Iterable[object] | str | os.PathLike[str],
     *,
     viewpoints: Viewpoints | None = None,
     pairs: Pairs = "all",
+    fixed_scan: int | None = None,
+    control: Sequence[Control] = (),
     min_unconfirmed_confidence: float = 0.95,
     min_unconfirmed_matches: int = 30,
     progress: Progress = False,
@@ -40,6 +62,9 @@ def network(
         with or without its extension); "auto" for those that are not named. Features keep theirs.
     `pairs`: "all"; "auto", the likeliest first until every scan has enough confirmed links or nothing is likely; or pairs
         of indices, after folders and files of several scans have become one input a scan.
+    `fixed_scan`: index of the scan whose frame is the world of its component; by default the first.
+    `control`: where scans are known to lie in the world, see Control. dof=4 says that the scans are levelled: z is up in
+        all of them and in the world.
     `min_unconfirmed_confidence`, `min_unconfirmed_matches`: a link in no loop joins scans only with at least these.
     `progress`, `options`: as in `align`.
 
@@ -70,11 +95,28 @@ def network(
             min_unconfirmed_confidence,
             min_unconfirmed_matches,
             pairs if isinstance(pairs, str) else [(int(a), int(b)) for a, b in pairs],
+            fixed_scan,
+            [_control_in(one) for one in control],
             report,
         )
     for scan, one in zip(result.scans, inputs, strict=True):
         scan.name = one.name
     return result
+
+
+def _control_in(one: Control) -> tuple[int, Points, float, Points | None, float]:
+    position = np.require(np.asarray(one.position, np.float64), requirements=["C_CONTIGUOUS", "ALIGNED"])
+    if position.shape != (3,):
+        raise ValueError(f"control of scan {one.scan}: position has shape {position.shape}; expected (3,)")
+    if one.rotation is None:
+        return int(one.scan), position, float(one.sigma), None, 0.0
+    rotation = np.asarray(one.rotation, np.float64)
+    if rotation.shape != (3, 3):
+        raise ValueError(f"control of scan {one.scan}: rotation has shape {rotation.shape}; expected (3, 3)")
+    matrix = np.eye(4)
+    matrix[:3, :3] = rotation
+    matrix = matrix_array(matrix, f"rotation of the control of scan {one.scan}")
+    return int(one.scan), position, float(one.sigma), matrix, float(one.rotation_sigma)
 
 
 @dataclass(frozen=True)

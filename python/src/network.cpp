@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
@@ -39,6 +41,16 @@ FeatureSource features_of(nb::handle function, std::exception_ptr& failure) {
   };
 }
 
+// Scan, position and its sigma, world_from_scan's rotation as the upper left of a matrix and its sigma.
+using ControlIn = std::tuple<std::size_t, VectorIn, double, std::optional<MatrixIn>, double>;
+
+ControlPose control_of(const ControlIn& given) {
+  const auto& [scan, position, sigma, rotation, rotation_sigma_rad] = given;
+  ControlPose control{scan, vector_of(position), sigma, {}, rotation_sigma_rad};
+  if (rotation) control.rotation = Eigen::Quaterniond(transformation_of(*rotation).linear()).normalized();
+  return control;
+}
+
 void choose_pairs(NetworkOptions& options, const std::variant<std::string, std::vector<ScanPair>>& pairs) {
   if (const auto* listed = std::get_if<std::vector<ScanPair>>(&pairs)) {
     options.pairs = PairRule::listed;
@@ -54,12 +66,14 @@ void choose_pairs(NetworkOptions& options, const std::variant<std::string, std::
 
 Network run(std::size_t scans, nb::handle features, const Keywords& keywords, double min_unconfirmed_confidence,
             std::size_t min_unconfirmed_matches, const std::variant<std::string, std::vector<ScanPair>>& pairs,
-            nb::handle progress) {
+            const std::optional<std::size_t>& fixed_scan, const std::vector<ControlIn>& control, nb::handle progress) {
   NetworkOptions options;
   options.pair = options_of(keywords);
   options.min_unconfirmed_confidence = min_unconfirmed_confidence;
   options.min_unconfirmed_matches = min_unconfirmed_matches;
   choose_pairs(options, pairs);
+  options.fixed_scan = fixed_scan;
+  for (const ControlIn& one : control) options.control.push_back(control_of(one));
   const ProgressCallback callback = progress_of(progress);
   std::exception_ptr failure;
   const FeatureSource source = features_of(features, failure);
@@ -113,6 +127,9 @@ void bind_scan(nb::module_& module) {
       .def_prop_ro(
           "centre", [](NetworkScan& scan) { return view(scan.centre); }, "(3,) float64: of its points, in the world.")
       .def_ro("points", &NetworkScan::points, "Points as given.")
+      .def_ro(
+          "control_residual", &NetworkScan::control_residual,
+          "Distance between its control's position and where the network has it [units of the cloud]; None without.")
       .def("__repr__", [](const NetworkScan& scan) {
         return fmt::format("<NetworkScan {}: {}>", scan.name,
                            scan.problem.empty() ? fmt::format("component {}", scan.component) : scan.problem);
@@ -188,6 +205,7 @@ void bind_network(nb::module_& module) {
       .def_ro("bundle_error", &Network::bundle_error,
               "RMS of the residuals of the links that are used [units of the cloud].")
       .def_ro("voxel_size", &Network::voxel_size, "[units of the cloud].")
+      .def_ro("warnings", &Network::warnings, "What of the arguments could not be followed, a sentence each.")
       .def("__str__",
            [](const Network& network) {
              std::string text = cli::network_summary(network);
@@ -200,7 +218,7 @@ void bind_network(nb::module_& module) {
       });
   module.def("register_network", &run, nb::arg("scans"), nb::arg("features"), nb::arg("options"),
              nb::arg("min_unconfirmed_confidence"), nb::arg("min_unconfirmed_matches"), nb::arg("pairs"),
-             nb::arg("progress").none());
+             nb::arg("fixed_scan").none(), nb::arg("control"), nb::arg("progress").none());
   module.def("own_voxel_size", &own_voxel_size_of, nb::arg("points").noconvert(), nb::arg("options"));
   module.def("common_voxel_size", &common_voxel_size, nb::arg("own"));
   module.def("scan_files", &scan_files_of, nb::arg("given"));

@@ -255,6 +255,7 @@ struct Layout<NetworkScan> {
       Field{"covariance", &NetworkScan::covariance},
       Field{"centre", &NetworkScan::centre},
       Field{"points", &NetworkScan::points},
+      Field{"control_residual", &NetworkScan::control_residual},
   };
 };
 
@@ -300,6 +301,7 @@ struct Layout<Network> {
       Field{"components", &Network::components},
       Field{"bundle_error", &Network::bundle_error},
       Field{"voxel_size", &Network::voxel_size},
+      Field{"warnings", &Network::warnings},
   };
 };
 

@@ -39,6 +39,10 @@ std::vector<std::vector<std::size_t>> connected_components(std::size_t nodes, st
   return members;
 }
 
+std::size_t anchor_of(const std::vector<std::size_t>& component, const std::optional<std::size_t>& fixed) {
+  return fixed && std::ranges::binary_search(component, *fixed) ? *fixed : component.front();
+}
+
 std::vector<bool> bridges(std::size_t nodes, std::span<const Edge> edges) {
   const Neighbours neighbours = neighbours_of(nodes, edges);
   const std::size_t none = edges.size();

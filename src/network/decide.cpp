@@ -18,10 +18,11 @@ std::vector<Edge> edges_of(const LinkGraph& graph, std::span<const std::size_t> 
   return edges;
 }
 
-std::vector<std::size_t> anchors_of(const LinkGraph& graph, std::span<const std::size_t> forest) {
+std::vector<std::size_t> anchors_of(const LinkGraph& graph, std::span<const std::size_t> forest,
+                                    const NetworkOptions& options) {
   std::vector<std::size_t> anchors;
   for (const auto& scans : connected_components(graph.centres.size(), edges_of(graph, forest))) {
-    anchors.push_back(scans.front());
+    anchors.push_back(anchor_of(scans, options.fixed_scan));
   }
   return anchors;
 }
@@ -34,16 +35,18 @@ double displacement(const NetworkLink& link, const Network& network, const ScanS
   return std::sqrt(step.tail<3>().squaredNorm() + 2.0 / 3.0 * step.head<3>().squaredNorm() * shape.size * shape.size);
 }
 
-// The frame of its first scan is a component's world, and the covariance that of a motion in the world.
-void place_scans(Network& network, const BalancedPoses& poses, std::span<const ScanShape> shapes) {
+// The frame of its anchor is a component's world, and the covariance that of a motion in the world.
+void place_scans(Network& network, const BalancedPoses& poses, std::span<const ScanShape> shapes,
+                 const NetworkOptions& options) {
   for (std::size_t c = 0; c < network.components.size(); ++c) {
-    const Transformation world_from_tree = poses.world_from_scan[network.components[c].front()].inverse();
+    const std::size_t anchor = anchor_of(network.components[c], options.fixed_scan);
+    const Transformation world_from_tree = poses.world_from_scan[anchor].inverse();
     for (const std::size_t i : network.components[c]) {
       NetworkScan& scan = network.scans[i];
       scan.component = c;
       scan.world_from_scan = world_from_tree * poses.world_from_scan[i];
       scan.world_from_scan.translation() *= network.voxel_size;
-      if (i == network.components[c].front()) scan.world_from_scan = Transformation::Identity();
+      if (i == anchor) scan.world_from_scan = Transformation::Identity();
       Vector6 scale;
       scale << Eigen::Vector3d::Ones(), Eigen::Vector3d::Constant(network.voxel_size);
       Matrix6 turn = Matrix6::Zero();
@@ -119,9 +122,9 @@ void decide(Network& network, std::span<const ScanShape> shapes, const NetworkOp
   for (const Triangle& loop : loops) network.cycles.push_back({loop.scans, std::sqrt(loop.error), loop.closes()});
   const std::vector<CycleSupport> support = cycle_support(measured.graph, loops);
   const std::vector<std::size_t> forest = spanning_forest(measured.graph, support);
-  const BalancedPoses poses = balance_poses(measured.graph, forest, anchors_of(measured.graph, forest));
+  const BalancedPoses poses = balance_poses(measured.graph, forest, anchors_of(measured.graph, forest, options));
   name_states(network, measured, poses, support, options);
-  place_scans(network, poses, shapes);
+  place_scans(network, poses, shapes, options);
 }
 
 void measure_residuals(Network& network, std::span<const ScanShape> shapes) {

@@ -4,6 +4,8 @@
 #include <optional>
 
 #include "core/parallel.hpp"
+#include "network/components.hpp"
+#include "network/control.hpp"
 #include "network/pose_equations.hpp"
 #include "registration/point_to_plane.hpp"
 
@@ -50,8 +52,9 @@ class SharedSurface {
 
 class Bundle {
  public:
-  Bundle(Network& network, std::span<const Features* const> features, const Options& options)
-      : network_(network), features_(features), threads_(options.threads) {
+  Bundle(Network& network, std::span<const Features* const> features, const NetworkOptions& options,
+         const std::vector<bool>& under_control)
+      : network_(network), features_(features), options_(options), threads_(options.pair.threads) {
     const std::size_t scans = network.scans.size();
     poses_.resize(scans, Transformation::Identity());
     is_free_.resize(scans, false);
@@ -59,11 +62,16 @@ class Bundle {
     for (const NetworkLink& link : network.links) {
       if (link.state == LinkState::used || link.state == LinkState::unconfirmed) links_.push_back(&link);
     }
-    for (const std::vector<std::size_t>& component : network.components) {
+    for (std::size_t c = 0; c < network.components.size(); ++c) {
+      const std::vector<std::size_t>& component = network.components[c];
+      const std::size_t anchor = anchor_of(component, options.fixed_scan);
       for (const std::size_t i : component) {
-        is_free_[i] = i != component.front();
+        is_free_[i] = component.size() > 1 && (i != anchor || under_control[c]);
         poses_[i] = local_pose(i);
       }
+    }
+    for (const ControlPose& one : options.control) {
+      if (under_control[network.scans[one.scan].component]) control_.push_back(&one);
     }
     parallel_blocks(scans, threads_, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -100,8 +108,9 @@ class Bundle {
     parallel_blocks(links_.size(), threads_, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t l = begin; l < end; ++l) factors[l] = factor(*links_[l], radius);
     });
-    PoseEquations equations(centres_, is_free_);
+    PoseEquations equations(centres_, is_free_, options_.pair.degrees_of_freedom);
     for (const RelativeFactor& one : factors) equations.add(one);
+    for (const ControlPose* one : control_) equations.add(prior(*one));
     return equations;
   }
 
@@ -117,6 +126,15 @@ class Bundle {
     result.information.diagonal().head<3>().array() += source.squared_size() / (damping * damping);
     result.information.diagonal().tail<3>().array() += 1 / (damping * damping);
     return result;
+  }
+
+  PriorFactor prior(const ControlPose& given) const {
+    ControlPose control = given;
+    control.position /= network_.voxel_size;
+    control.position_sigma /= network_.voxel_size;
+    const Features& features = *features_[control.scan];
+    const Eigen::Vector3d station = (station_of(features) - features.origin) / network_.voxel_size;
+    return prior_of(control, poses_[control.scan], station, centres_[control.scan]);
   }
 
   void write_back(const std::vector<Matrix6>& covariances) {
@@ -136,8 +154,10 @@ class Bundle {
 
   Network& network_;
   std::span<const Features* const> features_;
+  const NetworkOptions& options_;
   int threads_;
   std::vector<const NetworkLink*> links_;
+  std::vector<const ControlPose*> control_;
   std::vector<Transformation> poses_;
   std::vector<bool> is_free_;
   std::vector<std::unique_ptr<SharedSurface>> surfaces_;
@@ -146,8 +166,9 @@ class Bundle {
 
 }  // namespace
 
-void refine_jointly(Network& network, std::span<const Features* const> features, const Options& options) {
-  Bundle(network, features, options).run();
+void refine_jointly(Network& network, std::span<const Features* const> features, const NetworkOptions& options,
+                    const std::vector<bool>& under_control) {
+  Bundle(network, features, options, under_control).run();
 }
 
 }  // namespace igsp

@@ -32,7 +32,7 @@ ScanPair pair_of(std::size_t a, std::size_t b) {
 class PairSearch {
  public:
   PairSearch(const Network& network, std::span<const Features* const> features, std::span<const ScanShape> shapes,
-         const NetworkOptions& options)
+             const NetworkOptions& options)
       : start_(network), shapes_(shapes), options_(options), n_(network.scans.size()) {
     likeness_ = likeness_of_scans(features, options.pair.degrees_of_freedom, options.pair.threads);
     for (const Features* scan : features) spaces_.emplace_back(*scan);

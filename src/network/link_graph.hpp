@@ -24,6 +24,7 @@ struct GraphLink {
 struct LinkGraph {
   std::vector<Eigen::Vector3d> centres;
   std::vector<GraphLink> links;
+  int degrees_of_freedom = 6;  ///< of the scans; 4: they are levelled, and stay so
 };
 
 /// A link followed from source to target, or back.

@@ -93,6 +93,7 @@ bool contradicts_free_space(const NetworkLink& link) {
 MeasuredGraph measured_graph(std::span<const NetworkLink> links, std::span<const ScanShape> shapes, double voxel_size,
                              const NetworkOptions& options) {
   MeasuredGraph measured;
+  measured.graph.degrees_of_freedom = options.pair.degrees_of_freedom;
   for (const ScanShape& shape : shapes) measured.graph.centres.push_back(shape.centre / voxel_size);
   for (std::size_t i = 0; i < links.size(); ++i) {
     const bool is_there = links[i].state != LinkState::not_registered || may_be_right(links[i], options);

@@ -10,12 +10,22 @@ using Solver = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
 
 }  // namespace
 
-PoseEquations::PoseEquations(std::span<const Eigen::Vector3d> centres, const std::vector<bool>& is_free)
-    : centres_(centres), unknown_(centres.size(), stays) {
+PoseEquations::PoseEquations(std::span<const Eigen::Vector3d> centres, const std::vector<bool>& is_free,
+                             int degrees_of_freedom)
+    : centres_(centres), size_(degrees_of_freedom), unknown_(centres.size(), stays) {
   for (std::size_t i = 0; i < centres.size(); ++i) {
     if (is_free[i]) unknown_[i] = unknowns_++;
   }
-  gradient_ = Eigen::VectorXd::Zero(6 * unknowns_);
+  gradient_ = Eigen::VectorXd::Zero(size_ * unknowns_);
+}
+
+void PoseEquations::add_block(std::size_t row, std::size_t column, const Matrix6& block) {
+  const int first = 6 - size_;
+  for (int i = 0; i < size_; ++i) {
+    for (int j = 0; j < size_; ++j) {
+      entries_.emplace_back(size_ * row + i, size_ * column + j, block(first + i, first + j));
+    }
+  }
 }
 
 void PoseEquations::add(const RelativeFactor& factor) {
@@ -26,21 +36,24 @@ void PoseEquations::add(const RelativeFactor& factor) {
   };
   for (int a = 0; a < 2; ++a) {
     if (unknown_[scans[a]] == stays) continue;
-    const std::size_t row = 6 * unknown_[scans[a]];
-    gradient_.segment<6>(row) += jacobians[a].transpose() * factor.gradient;
+    const Vector6 gradient = jacobians[a].transpose() * factor.gradient;
+    gradient_.segment(size_ * unknown_[scans[a]], size_) += gradient.tail(size_);
     for (int b = 0; b < 2; ++b) {
       if (unknown_[scans[b]] == stays) continue;
-      const Matrix6 block = jacobians[a].transpose() * factor.information * jacobians[b];
-      const std::size_t column = 6 * unknown_[scans[b]];
-      for (int i = 0; i < 6; ++i) {
-        for (int j = 0; j < 6; ++j) entries_.emplace_back(row + i, column + j, block(i, j));
-      }
+      add_block(unknown_[scans[a]], unknown_[scans[b]], jacobians[a].transpose() * factor.information * jacobians[b]);
     }
   }
 }
 
+void PoseEquations::add(const PriorFactor& factor) {
+  const std::size_t place = unknown_[factor.scan];
+  if (place == stays) return;
+  gradient_.segment(size_ * place, size_) += factor.gradient.tail(size_);
+  add_block(place, place, factor.information);
+}
+
 Eigen::SparseMatrix<double> PoseEquations::information() const {
-  Eigen::SparseMatrix<double> matrix(6 * unknowns_, 6 * unknowns_);
+  Eigen::SparseMatrix<double> matrix(size_ * unknowns_, size_ * unknowns_);
   matrix.setFromTriplets(entries_.begin(), entries_.end());
   return matrix;
 }
@@ -53,7 +66,7 @@ std::optional<std::vector<Vector6>> PoseEquations::solve() const {
   const Eigen::VectorXd solution = solver.solve(-gradient_);
   if (!solution.allFinite()) return {};
   for (std::size_t i = 0; i < unknown_.size(); ++i) {
-    if (unknown_[i] != stays) steps[i] = solution.segment<6>(6 * unknown_[i]);
+    if (unknown_[i] != stays) steps[i].tail(size_) = solution.segment(size_ * unknown_[i], size_);
   }
   return steps;
 }
@@ -65,9 +78,9 @@ std::vector<Matrix6> PoseEquations::covariances() const {
   if (solver.info() != Eigen::Success || solver.vectorD().minCoeff() <= 0) return blocks;
   for (std::size_t i = 0; i < unknown_.size(); ++i) {
     if (unknown_[i] == stays) continue;
-    Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(6 * unknowns_, 6);
-    unit.middleRows<6>(6 * unknown_[i]).setIdentity();
-    blocks[i] = solver.solve(unit).middleRows<6>(6 * unknown_[i]);
+    Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(size_ * unknowns_, size_);
+    unit.middleRows(size_ * unknown_[i], size_).setIdentity();
+    blocks[i].bottomRightCorner(size_, size_) = solver.solve(unit).middleRows(size_ * unknown_[i], size_);
   }
   return blocks;
 }

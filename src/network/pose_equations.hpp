@@ -20,13 +20,21 @@ struct RelativeFactor {
   Vector6 gradient = Vector6::Zero();
 };
 
+/// What holds a scan where it is known to lie, as a quadratic in its own step.
+struct PriorFactor {
+  std::size_t scan = 0;
+  Matrix6 information = Matrix6::Zero();
+  Vector6 gradient = Vector6::Zero();
+};
+
 /// Normal equations of the poses of many scans: a step of each about its own centre, in its own frame. Scans outside
-/// `is_free` stay where they are.
+/// `is_free` stay where they are. With 4 degrees of freedom scans turn about z alone.
 class PoseEquations {
  public:
-  PoseEquations(std::span<const Eigen::Vector3d> centres, const std::vector<bool>& is_free);
+  PoseEquations(std::span<const Eigen::Vector3d> centres, const std::vector<bool>& is_free, int degrees_of_freedom);
 
   void add(const RelativeFactor& factor);
+  void add(const PriorFactor& factor);
 
   /// One step per scan, 0 for those that stay; nothing where the equations do not determine them.
   std::optional<std::vector<Vector6>> solve() const;
@@ -36,9 +44,11 @@ class PoseEquations {
 
  private:
   static constexpr std::size_t stays = SIZE_MAX;
+  void add_block(std::size_t row, std::size_t column, const Matrix6& block);
   Eigen::SparseMatrix<double> information() const;
 
   std::span<const Eigen::Vector3d> centres_;
+  int size_;                          // of a step: its last entries
   std::vector<std::size_t> unknown_;  // place among the unknowns
   std::size_t unknowns_ = 0;
   std::vector<Eigen::Triplet<double>> entries_;

@@ -94,7 +94,7 @@ class Balance {
   }
 
   PoseEquations linearise(double leniency) const {
-    PoseEquations equations(graph_.centres, is_free_);
+    PoseEquations equations(graph_.centres, is_free_, graph_.degrees_of_freedom);
     for (std::size_t l = 0; l < graph_.links.size(); ++l) {
       const GraphLink& link = graph_.links[l];
       if (!takes_part(link)) continue;

@@ -5,6 +5,7 @@
 #include "igsp/errors.hpp"
 #include "igsp/network.hpp"
 #include "network/common_scale.hpp"
+#include "network/control.hpp"
 #include "network/decide.hpp"
 #include "network/joint_refinement.hpp"
 #include "network/likely_pairs.hpp"
@@ -77,15 +78,18 @@ std::string_view to_string(LinkState state) {
 Network register_network(std::size_t scans, const FeatureSource& features, const NetworkOptions& options,
                          const ProgressCallback& progress, const PairStore& store) {
   check(options);
+  check_control(options, scans);
   Gathered gathered = gather(scans, features, progress);
   Network network;
   network.scans = std::move(gathered.scans);
   network.voxel_size = gathered.voxel_size;
   std::vector<const Features*> views;
   std::vector<ScanShape> shapes;
+  std::vector<Eigen::Vector3d> stations;
   for (const Features& one : gathered.features) {
     views.push_back(&one);
     shapes.push_back(shape_of(one));
+    stations.push_back(station_of(one));
   }
   const auto report_pairs = [&](double done) { report(progress, "pairs", done); };
   if (options.pairs == PairRule::automatic) {
@@ -98,7 +102,9 @@ Network register_network(std::size_t scans, const FeatureSource& features, const
   report(progress, "pairs", 1);
   decide(network, shapes, options);
   report(progress, "network", 0);
-  if (options.pair.refinement.enabled) refine_jointly(network, views, options.pair);
+  const std::vector<bool> placed = move_to_control(network, stations, options);
+  if (options.pair.refinement.enabled) refine_jointly(network, views, options, placed);
+  measure_control(network, stations, options, placed);
   measure_residuals(network, shapes);
   report(progress, "network", 1);
   return network;

@@ -90,6 +90,16 @@ def test_scans_of_one_file_are_inputs_of_their_own(site, tmp_path, pip_command):
     assert [row["scan"] for row in rows] == names
     written = [[float(row[name]) for name in ("tx", "ty", "tz")] for row in rows]
     np.testing.assert_array_equal(written, network.poses[:, :3, 3])
+    moved = tmp_path / "moved"
+    run = subprocess.run(
+        [pip_command, "network", *files, "-o", tmp_path / "survey", "--target-points", "3000", "--write", moved],
+        capture_output=True,
+        text=True,
+    )
+    assert run.returncode == 0 and sorted(path.name for path in moved.iterdir()) == ["last.ptx", "site.e57"], run.stderr
+    for i, name in enumerate(["site.e57#0", "site.e57#1", "site.e57#2", "last.ptx"]):
+        before = igsp.transform_points(igsp.read_points(names[i]), network.poses[i])
+        np.testing.assert_allclose(igsp.read_points(moved / name), before, atol=1e-5)
     one = igsp.formats.read_cloud(names[1])
     np.testing.assert_array_equal(igsp.read_points(names[1]), one.points)
     assert one.scan_count == 1 and len(igsp.read_points(files[0])) > 2 * len(one.points)
@@ -116,6 +126,23 @@ def test_which_pairs_are_tried(site, answer):
         igsp.network(site, pairs="some", **FAST)
     with pytest.raises(ValueError, match="a pair of scans 1 and 9 is listed"):
         igsp.network(site, pairs=[(1, 9)], **FAST)
+
+
+def test_what_the_world_is(site, answer):
+    fixed = igsp.network(site, fixed_scan=2, **FAST)
+    np.testing.assert_array_equal(fixed.poses[2], np.eye(4))
+    place = site[0].world_from_scanner + [[0, 0, 0, 100], [0, 0, 0, 50], [0, 0, 0, 5], [0, 0, 0, 0]]
+    control = [igsp.Control(0, place[:3, 3], 0.01, place[:3, :3], 1e-3)]
+    moved = igsp.network(site, control=control, dof=4, **FAST)
+    np.testing.assert_allclose(moved.poses[0], place, atol=1e-3)
+    assert moved.scans[0].control_residual < 1e-3 and moved.scans[1].control_residual is None
+    lost = igsp.network(site, control=[igsp.Control(1, [0, 0, 0], 0.1)], **FAST)
+    np.testing.assert_array_equal(lost.poses, answer.poses)
+    assert "does not say where it lies" in lost.warnings[0]
+    with pytest.raises(ValueError, match="control of scan 0: position has shape"):
+        igsp.network(site, control=[igsp.Control(0, [0, 0], 0.1)], **FAST)
+    with pytest.raises(ValueError, match="control of scan 9; there are 4 scans"):
+        igsp.network(site, control=[igsp.Control(9, [0, 0, 0], 0.1)], **FAST)
 
 
 def test_progress_stops_and_errors_pass(site):

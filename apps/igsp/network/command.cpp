@@ -7,6 +7,7 @@
 #include "files/output_file.hpp"
 #include "igsp/errors.hpp"
 #include "network/inputs.hpp"
+#include "network/moved_scans.hpp"
 #include "network/outputs.hpp"
 #include "network/page.hpp"
 #include "network/store.hpp"
@@ -24,7 +25,10 @@ namespace fs = std::filesystem;
 
 struct NetworkSettings {
   std::vector<fs::path> scans;
-  fs::path folder, viewpoints;
+  fs::path folder, viewpoints, control;
+  fs::path moved, merged;
+  std::string fixed_scan;
+  bool levelled = false;
   std::string pairs = "all";  // or "auto", or a file
   ReadOptions read;
   std::int64_t max_points = 20'000'000;
@@ -50,6 +54,15 @@ ScanReading reading_of(const NetworkSettings& settings) {
   return reading;
 }
 
+void choose_world(NetworkOptions& options, const NetworkSettings& settings, const std::vector<fs::path>& files) {
+  if (settings.levelled) options.pair.degrees_of_freedom = 4;
+  if (!settings.fixed_scan.empty() && !settings.control.empty()) {
+    throw InvalidArgument("--fix and --control both say what the world is: give one of them");
+  }
+  if (!settings.fixed_scan.empty()) options.fixed_scan = scan_named(settings.fixed_scan, files, "--fix");
+  if (!settings.control.empty()) options.control = read_control(settings.control, files);
+}
+
 void choose_pairs(NetworkOptions& options, const std::string& pairs, const std::vector<fs::path>& files) {
   if (pairs == "all") return;
   options.pairs = pairs == "auto" ? PairRule::automatic : PairRule::listed;
@@ -64,6 +77,18 @@ void write_outputs(const fs::path& folder, const Network& network, const Network
   write_text(folder / "poses.tum", poses_tum(network));
   write_text(folder / "report.html", network_page(network, options, drawn));
   write_text(folder / "poses.csv", poses_csv(network));
+}
+
+// What the answer is for; after the answer itself, which a full disk must not take along.
+void write_clouds(const NetworkSettings& settings, const Network& network, const ScanReading& reading,
+                  const ProgressCallback& progress) {
+  if (network.components.empty() || network.components.front().size() < 2) return;
+  if (!settings.moved.empty()) {
+    for (const std::string& line : write_moved_scans(settings.moved, network, reading, progress)) {
+      if (!settings.quiet) std::cerr << "igsp: warning: " << line << "\n";
+    }
+  }
+  if (!settings.merged.empty()) write_merged(settings.merged, network, reading, progress);
 }
 
 int exit_code(const Network& network) {
@@ -96,6 +121,12 @@ int run_network(const NetworkSettings& settings) {
   }
   const ScanReading reading = reading_of(settings);
   choose_pairs(options, settings.pairs, reading.files);
+  choose_world(options, settings, reading.files);
+  if (!settings.moved.empty()) check_moved_scans(settings.moved, reading);
+  if (!settings.merged.empty()) {
+    format_of(settings.merged);
+    check_writable(settings.merged);
+  }
   create_folder(settings.folder);
   ProgressBar bar(!settings.quiet);
   const ProgressCallback progress = bar.callback();
@@ -111,7 +142,12 @@ int run_network(const NetworkSettings& settings) {
   stop_if_interrupted();
   bar.finish();
   for (std::size_t i = 0; i < network.scans.size(); ++i) network.scans[i].name = reading.files[i].string();
+  for (const std::string& warning : network.warnings) {
+    if (!settings.quiet) std::cerr << "igsp: warning: " << warning << "\n";
+  }
   write_outputs(settings.folder, network, options, drawn);
+  write_clouds(settings, network, reading, progress);
+  bar.finish();
   std::cout << network_summary(network);
   return exit_code(network);
 }
@@ -120,7 +156,8 @@ constexpr const char* notes =
     "SCANS are files, or folders for all point clouds in them (but .txt and .csv must be named). The folder of -o "
     "gets\n"
     "  poses.csv     scan,component,qw,qx,qy,qz,tx,ty,tz: world_from_scan; every component has a world of its own,\n"
-    "                the frame of its first scan; a scan that could not be placed is a component of its own\n"
+    "                the frame of its first scan (but see --fix, --control); a scan that could not be placed is a "
+    "component of its own\n"
     "  links.csv     every pair that was tried: used, unconfirmed (in no loop), rejected or not_registered, and why\n"
     "  report.html   to look at: map, links, stations; one file, without a network\n"
     "  network.json  all of it, with covariances; network.g2o, poses.tum: for other programs\n"
@@ -145,6 +182,24 @@ void add_network_command(CLI::App& app, Command& command) {
                    wrapped("CSV, scan,x,y,z: where scanners stood, each in its scan's own frame; the space that they "
                            "saw through is evidence against wrong links"))
       ->type_name("FILE");
+  network
+      ->add_option("--write", settings->moved,
+                   wrapped("folder for every scan moved into its frame, in its own format with all that belongs to its "
+                           "points; those of other frames in component_1, ... in it"))
+      ->type_name("DIR");
+  network
+      ->add_option("--merged", settings->merged,
+                   wrapped("one cloud of all scans in the largest frame, a point per half voxel: .ply, .pcd or text"))
+      ->type_name("FILE");
+  network->add_option("--fix", settings->fixed_scan, "scan whose frame is the world; default the first")
+      ->type_name("SCAN");
+  network
+      ->add_option("--control", settings->control,
+                   wrapped("CSV, scan,x,y,z,sigma and, where known, qw,qx,qy,qz,sigma_deg: where scanners stood in the "
+                           "world, as soft priors with these standard deviations"))
+      ->type_name("FILE");
+  network->add_flag("--levelled", settings->levelled,
+                    wrapped("the scans are levelled: z is up in all of them and in the world; as --dof 4"));
   network
       ->add_option(
           "--pairs", settings->pairs,

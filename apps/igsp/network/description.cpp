@@ -53,6 +53,7 @@ Json network_json(const Network& network, const NetworkOptions& options) {
                      {"points", scan.points},
                      {"component", scan.component},
                      {"world_from_scan", to_json(scan.world_from_scan)},
+                     {"control_residual", scan.control_residual ? Json(*scan.control_residual) : Json(nullptr)},
                      {"centre", row(scan.centre)},
                      {"covariance", rows(scan.covariance)}});
   }
@@ -70,6 +71,7 @@ Json network_json(const Network& network, const NetworkOptions& options) {
           {"bundle_error", network.bundle_error},
           {"voxel_size", network.voxel_size},
           {"components", network.components},
+          {"warnings", network.warnings},
           {"scans", scans},
           {"links", links},
           {"cycles", cycles},

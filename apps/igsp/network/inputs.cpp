@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "files/cloud_input.hpp"
@@ -57,17 +58,29 @@ std::size_t required_column(const CsvTable& table, std::string_view name, std::s
   return *column;
 }
 
-// The scan that a field names.
-std::size_t scan_in(const CsvTable& table, const CsvRecord& record, std::size_t column,
-                    const std::vector<fs::path>& files) {
-  const std::string& name = record.fields[column];
+std::optional<std::size_t> find_scan(const std::string& name, const std::vector<fs::path>& files) {
   auto found = std::ranges::find(files, fs::path(name));
   if (found == files.end()) {
     found =
         std::ranges::find_if(files, [&](const auto& file) { return file.filename() == name || file.stem() == name; });
   }
-  if (found == files.end()) fail_at(table, record, column, fmt::format("\"{}\" is none of the scans given", name));
+  if (found == files.end()) return {};
   return found - files.begin();
+}
+
+// The scan that a field names.
+std::size_t scan_in(const CsvTable& table, const CsvRecord& record, std::size_t column,
+                    const std::vector<fs::path>& files) {
+  const std::string& name = record.fields[column];
+  const std::optional<std::size_t> scan = find_scan(name, files);
+  if (!scan) fail_at(table, record, column, fmt::format("\"{}\" is none of the scans given", name));
+  return *scan;
+}
+
+double positive_in(const CsvTable& table, const CsvRecord& record, std::size_t column) {
+  const double number = number_in(table, record, column);
+  if (number <= 0) fail_at(table, record, column, fmt::format("{} is not greater than 0", number));
+  return number;
 }
 
 }  // namespace
@@ -116,6 +129,35 @@ std::vector<ScanPair> read_pairs(const fs::path& path, const std::vector<fs::pat
     if (pairs.back().first == pairs.back().second) fail_at(table, record, target, "the scan is paired with itself");
   }
   return pairs;
+}
+
+std::size_t scan_named(const std::string& name, const std::vector<fs::path>& files, std::string_view option) {
+  const std::optional<std::size_t> scan = find_scan(name, files);
+  if (!scan) throw InvalidArgument(fmt::format("{} {}: none of the scans given", option, name));
+  return *scan;
+}
+
+std::vector<ControlPose> read_control(const fs::path& path, const std::vector<fs::path>& files) {
+  constexpr std::string_view position = "scan,x,y,z,sigma", rotation = "qw,qx,qy,qz,sigma_deg";
+  const CsvTable table = read_csv(path);
+  const auto column = [&](std::string_view name) { return required_column(table, name, position); };
+  const auto turn = [&](std::string_view name) { return required_column(table, name, rotation); };
+  const std::size_t scan = column("scan"), x = column("x"), y = column("y"), z = column("z"), sigma = column("sigma");
+  const bool has_rotations = find_column(table, "qw").has_value();
+  std::vector<ControlPose> control;
+  for (const CsvRecord& record : table.records) {
+    const auto number = [&](std::size_t c) { return number_in(table, record, c); };
+    ControlPose& one = control.emplace_back();
+    one.scan = scan_in(table, record, scan, files);
+    one.position = {number(x), number(y), number(z)};
+    one.position_sigma = positive_in(table, record, sigma);
+    if (!has_rotations || record.fields[turn("qw")].empty()) continue;
+    const Eigen::Quaterniond q(number(turn("qw")), number(turn("qx")), number(turn("qy")), number(turn("qz")));
+    if (!(std::abs(q.norm() - 1) < 1e-3)) fail_at(table, record, turn("qw"), "the quaternion is not of unit length");
+    one.rotation = q.normalized();
+    one.rotation_sigma_rad = positive_in(table, record, turn("sigma_deg")) * std::numbers::pi / 180;
+  }
+  return control;
 }
 
 FirstLook look_at_scans(const ScanReading& reading, const ScaleOptions& scale, const ProgressCallback& progress) {

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "igsp/features.hpp"
@@ -24,6 +25,14 @@ std::map<std::filesystem::path, Eigen::Vector3d> read_viewpoints(const std::file
 
 /// source,target: pairs of scans by their names, as above; either first. Throws as read_viewpoints.
 std::vector<ScanPair> read_pairs(const std::filesystem::path& path, const std::vector<std::filesystem::path>& files);
+
+/// The scan of that name, as above. Throws InvalidArgument that names `option`.
+std::size_t scan_named(const std::string& name, const std::vector<std::filesystem::path>& files,
+                       std::string_view option);
+
+/// scan,x,y,z,sigma and, where the rotation is known, qw,qx,qy,qz,sigma_deg. Throws as read_viewpoints.
+std::vector<ControlPose> read_control(const std::filesystem::path& path,
+                                      const std::vector<std::filesystem::path>& files);
 
 /// How the scans of a network are read.
 struct ScanReading {

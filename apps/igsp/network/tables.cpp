@@ -84,8 +84,8 @@ std::string network_g2o(const Network& network) {
   for (std::size_t i = 0; i < network.scans.size(); ++i) {
     lines += fmt::format("VERTEX_SE3:QUAT {} {}\n", i, tum_pose(network.scans[i].world_from_scan));
   }
-  for (const std::vector<std::size_t>& component : network.components) {
-    lines += fmt::format("FIX {}\n", component.front());
+  for (std::size_t i = 0; i < network.scans.size(); ++i) {
+    if (network.scans[i].covariance.isZero(0)) lines += fmt::format("FIX {}\n", i);
   }
   for (const NetworkLink& link : network.links) {
     if (link.state != LinkState::used && link.state != LinkState::unconfirmed) continue;

@@ -16,6 +16,7 @@ void add_evaluate_command(CLI::App& app, Command& command);
 void add_benchmark_command(CLI::App& app, Command& command);
 void add_simulate_command(CLI::App& app, Command& command);
 void add_info_command(CLI::App& app, Command& command);
+void add_convert_command(CLI::App& app, Command& command);
 void add_transform_command(CLI::App& app, Command& command);
 void add_downsample_command(CLI::App& app, Command& command);
 void add_options_command(CLI::App& app, Command& command);

@@ -3,7 +3,8 @@
 function(find_page_part variable path package)
   get_filename_component(name ${path} NAME)
   get_filename_component(folder ${path} DIRECTORY)
-  find_file(${variable} ${name} PATHS ${folder} NO_DEFAULT_PATH DOC "Part of the report page, from ${package}")
+  find_file(${variable} ${name} PATHS ${folder} NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH
+    DOC "Part of the report page, from ${package}")
   if(NOT EXISTS "${${variable}}")
     message(FATAL_ERROR "The report page needs ${path}: install the Debian package ${package} "
       "(scripts/setup.sh installs all that is needed), or say where it is with -D${variable}=FILE")

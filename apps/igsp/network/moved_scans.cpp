@@ -1,0 +1,133 @@
+#include "network/moved_scans.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <set>
+
+#include "files/cloud_file.hpp"
+#include "files/foreign_formats.hpp"
+#include "files/moved_output.hpp"
+#include "igsp/errors.hpp"
+#include "spatial/voxel_grid.hpp"
+
+namespace igsp::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t sample_size = 1000;  // of a scan whose points are only passed on
+
+constexpr double tolerance = 1e-4;  // [voxels]: floats are written where they are as exact
+
+void report(const ProgressCallback& progress, std::string_view stage, std::size_t done, std::size_t all) {
+  if (progress && !progress({stage, static_cast<double>(done) / static_cast<double>(all)})) throw Cancelled();
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw FileError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
+}
+
+// FILE#1 of the file as it has been written so far: its other scans stay as they are.
+fs::path scan_of(const fs::path& file, const fs::path& scan) {
+  const std::string name = scan.string();
+  return file.string() + name.substr(file_of_scan(scan).string().size());
+}
+
+// By scan; empty for one that lies alone.
+std::vector<fs::path> moved_files(const fs::path& folder, const Network& network, const ScanReading& reading) {
+  std::vector<fs::path> outputs(reading.files.size());
+  std::map<fs::path, fs::path> output_of;  // by the file that is read
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const std::size_t component = network.scans[i].component;
+    if (network.components[component].size() < 2) continue;
+    const fs::path file = file_of_scan(reading.files[i]);
+    const fs::path place = component == 0 ? folder : folder / fmt::format("component_{}", component);
+    outputs[i] = output_of.emplace(file, place / file.filename()).first->second;
+  }
+  return outputs;
+}
+
+// What write_moved_output needs to know of a scan.
+CloudInput look_at(const fs::path& scan, const fs::path& output, const ReadOptions& options) {
+  if (!moves_foreign(scan, output)) return sample_cloud(scan, sample_size, "write", {}, options);
+  CloudInput cloud;
+  cloud.path = scan;
+  return cloud;
+}
+
+}  // namespace
+
+void check_moved_scans(const fs::path& folder, const ScanReading& reading) {
+  std::map<fs::path, fs::path> file_named;
+  for (const fs::path& scan : reading.files) {
+    const fs::path file = file_of_scan(scan);
+    const auto& [name, first] = *file_named.emplace(file.filename(), file).first;
+    if (first != file) {
+      throw InvalidArgument(fmt::format("--write: {} and {} would be written under one name; rename one of them",
+                                        first.string(), file.string()));
+    }
+    std::error_code ignored;
+    if (fs::equivalent(file, folder / name, ignored)) {
+      throw InvalidArgument(fmt::format("--write: {} would be overwritten; choose another folder", file.string()));
+    }
+  }
+}
+
+std::vector<std::string> write_moved_scans(const fs::path& folder, const Network& network, const ScanReading& reading,
+                                           const ProgressCallback& progress) {
+  const std::vector<fs::path> outputs = moved_files(folder, network, reading);
+  std::set<fs::path> begun;
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    report(progress, "write", i, outputs.size());
+    if (outputs[i].empty()) continue;
+    make_folder(outputs[i].parent_path());
+    const bool is_first = begun.insert(outputs[i]).second;
+    const fs::path source = is_first ? reading.files[i] : scan_of(outputs[i], reading.files[i]);
+    check_moved_output(source, outputs[i]);
+    const CloudInput cloud = look_at(source, outputs[i], reading.read);
+    const auto quiet = [&](const Progress&) {
+      report(progress, "write", i, outputs.size());
+      return true;
+    };
+    for (std::string& line : write_moved_output(cloud, outputs[i], network.scans[i].world_from_scan,
+                                                tolerance * network.voxel_size, quiet)) {
+      lines.push_back(std::move(line));
+    }
+  }
+  report(progress, "write", 1, 1);
+  return lines;
+}
+
+std::size_t write_merged(const fs::path& path, const Network& network, const ScanReading& reading,
+                         const ProgressCallback& progress) {
+  const double spacing = network.voxel_size / 2;
+  const std::vector<std::size_t>& scans = network.components.front();
+  const Eigen::Vector3d origin = network.scans[scans.front()].centre;
+  VoxelFilter filter(origin, spacing);
+  const double reach = 0.99 * VoxelFilter::reach * spacing;  // stray points beyond it are left out
+  Points moved;
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    const Transformation& world_from_scan = network.scans[scans[k]].world_from_scan;
+    CloudFile reader(reading.files[scans[k]], reading.read);
+    for (PointView chunk = reader.next_chunk(); !chunk.empty(); chunk = reader.next_chunk()) {
+      report(progress, "merge", k, scans.size());
+      moved.clear();
+      for (const Eigen::Vector3d& point : chunk) {
+        const Eigen::Vector3d in_world = world_from_scan * point;
+        if ((in_world - origin).cwiseAbs().maxCoeff() < reach) moved.push_back(in_world);
+      }
+      filter.add(moved);
+    }
+  }
+  Points centroids = filter.centroids();
+  for (Eigen::Vector3d& centroid : centroids) centroid += origin;
+  write_points(path, centroids);
+  report(progress, "merge", 1, 1);
+  return centroids.size();
+}
+
+}  // namespace igsp::cli
