@@ -48,7 +48,7 @@ struct NetworkOptions {
   double min_unconfirmed_confidence = 0.95;
 
   /// ... and at least so many agreeing matches: a bare room fits every other one like it, on few matches.
-  std::size_t min_unconfirmed_matches = 30;
+  std::size_t min_unconfirmed_matches = 35;
 
   std::optional<std::size_t> fixed_scan;  ///< its frame is the world of its component; none: that of the first scan
 

@@ -49,7 +49,7 @@ def network(
     fixed_scan: int | None = None,
     control: Sequence[Control] = (),
     min_unconfirmed_confidence: float = 0.95,
-    min_unconfirmed_matches: int = 30,
+    min_unconfirmed_matches: int = 35,
     progress: Progress = False,
     **options: Unpack[OptionKeywords],
 ) -> Network:
