@@ -48,8 +48,8 @@ bool is_another(double factor) {
 
 std::vector<double> factors_to_try(const Scan& source, const Scan& target, const SearchedPair& pair,
                                    const Result& refused, const ProgressCallback& progress) {
-  const Precision& precision = refused.precision;
-  if (precision.scale_sigma > 0 && is_of_another_scale(precision)) return {precision.scale};
+  // At a pose that is otherwise as good as not, the surfaces know; at a wrong one they tell any factor.
+  if (refused.evidence.quality > 0 && is_of_another_scale(refused.precision)) return {refused.precision.scale};
   const RatioPeak vote = scale_vote(pair.source, pair.target, 1.0, pair.options);
   if (vote.prominence >= enough_prominence && is_another(vote.factor)) return {vote.factor};
   const double ratio = size_of(pair.target.points) / size_of(pair.source.points);
