@@ -77,7 +77,7 @@ def align_similarity(
 
     Parameters as for `align`, but no Features and no guess. `result.factor` is what `source` was multiplied by, whatever
     its size; `result.result` is the answer for it in the target's unit, `result.target_from_source` both in one (4, 4) matrix.
-    Takes up to twelve times as long as `align`.
+    Takes as long as several calls of `align`.
     """
     with progress_function(progress) as report:
         scans = _load_both(source, target, source_viewpoint, target_viewpoint)

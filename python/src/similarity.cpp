@@ -20,12 +20,6 @@ SimilarityResult run(const PointsIn& source, const PointsIn& target, const std::
   return align_similarity(scan_of(source, source_viewpoint), scan_of(target, target_viewpoint), options, callback);
 }
 
-Array<double, 4, 4> matrix_of(const SimilarityResult& similarity) {
-  Eigen::Matrix4d matrix = similarity.result.target_from_source.matrix();
-  matrix.topLeftCorner<3, 3>() *= similarity.factor;
-  return array_of(matrix);
-}
-
 }  // namespace
 
 void bind_similarity(nb::module_& module) {
@@ -34,8 +28,9 @@ void bind_similarity(nb::module_& module) {
       .def_ro("sigma", &SimilarityResult::sigma,
               "Standard deviation of the factor, from the residuals; 0 where nothing was registered.")
       .def_ro("result", &SimilarityResult::result, "Of the source after that, in the target's unit.")
-      .def_prop_ro("target_from_source", &matrix_of, nb::rv_policy::automatic,
-                   "(4, 4) of both: p_target = target_from_source * (p_source, 1); no rigid motion.")
+      .def_prop_ro(
+          "target_from_source", [](const SimilarityResult& similarity) { return array_of(similarity.matrix()); },
+          nb::rv_policy::automatic, "(4, 4) of both: p_target = target_from_source * (p_source, 1); no rigid motion.")
       .def("__bool__", [](const SimilarityResult& similarity) { return similarity.result.registered; })
       .def("__repr__", [](const SimilarityResult& similarity) {
         return fmt::format("<SimilarityResult: {}, factor {:.6g}>",

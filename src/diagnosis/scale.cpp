@@ -68,15 +68,13 @@ std::optional<Diagnosis> another_scale(const Scan& source, const Scan& target, c
   for (const double factor : factors_to_try(source, target, pair, refused, progress)) {
     const SimilarityResult found = similarity_near(source, target, factor, options, progress);
     if (!found.result.registered || !is_another(found.factor)) continue;
-    Eigen::Matrix4d target_from_source = found.result.target_from_source.matrix();
-    target_from_source.leftCols<3>() *= found.factor;
     return Diagnosis{
         Cause::scale,
         fmt::format("the source would register multiplied by {:.5g} (confidence {:.3f}){}: the clouds have "
                     "different units of length or one is measured too long; scale it, or let --scale auto "
                     "find the factor",
                     found.factor, found.result.confidence, in_units(found.factor)),
-        target_from_source};
+        found.matrix()};
   }
   return std::nullopt;
 }

@@ -35,7 +35,7 @@ constexpr std::array<double, 6> scale_radii{3, 3,   2,
                                             2, 1.5, 1};  // voxels: ends of a scan that is 5 % too long lie far off
 constexpr std::size_t max_scale_points = 2000;
 
-// Surfaces at a right pose differ in scale by up to 2.4 % (hand-held depth cameras), those of laser scans by 0.1 %.
+// Surfaces at a right pose differ in scale by up to 2.4 % (hand-held depth cameras), those of laser scanners by 0.6 %.
 constexpr double largest_scale_error = 0.035;  // of the logarithm of the factor
 constexpr double certain_sigmas = 10;          // residuals are correlated, so their sigma is too small
 

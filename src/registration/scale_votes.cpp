@@ -11,7 +11,7 @@ namespace igsp {
 namespace {
 
 constexpr double min_length = 8.0;         // voxels
-constexpr double enough_prominence = 6.0;  // of 13 pairs without overlap, 2 voxels sizes each, one vote is above
+constexpr double enough_prominence = 6.0;  // of 13 pairs without overlap, two voxel sizes each, one vote is above
 constexpr double same_factor = 0.15;       // of the logarithm: seen in voxels of the same size
 constexpr double farthest = 0.7;           // of the logarithm, from the ratio of the clouds' own voxel sizes
 constexpr double widening = 1.4;           // steps between sizes that are tried around the clouds' own

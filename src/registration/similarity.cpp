@@ -32,10 +32,17 @@ SimilarityResult similarity_near(const Scan& source, const Scan& target, double 
     const double growth = std::abs(std::log(precision.scale));
     if (!(precision.scale_sigma > 0) || growth < settled || growth > sensible) break;
     SimilarityResult next = at_factor(source, target, similarity.factor * precision.scale, options, progress);
-    if (similarity.result.registered && !next.result.registered) break;
+    const bool is_better = next.result.registered || next.result.confidence > similarity.result.confidence;
+    if (!is_better) break;  // what a wrong pose says of the scale leads nowhere
     similarity = std::move(next);
   }
   return similarity;
+}
+
+Eigen::Matrix4d SimilarityResult::matrix() const {
+  Eigen::Matrix4d matrix = result.target_from_source.matrix();
+  matrix.topLeftCorner<3, 3>() *= factor;
+  return matrix;
 }
 
 SimilarityResult align_similarity(const Scan& source, const Scan& target, const Options& options,

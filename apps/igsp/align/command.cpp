@@ -282,9 +282,10 @@ void add_align_command(CLI::App& app, Command& command) {
                            "seven degrees of freedom; default 1"))
       ->type_name("FACTOR|auto");
   align->add_flag("--force", settings->force, "write -o and --transform also for an estimate that is not registered");
-  align->add_flag("--no-diagnose", settings->no_diagnose,
-                  wrapped("do not look for the cause of a refusal (mirrored or flat clouds, degrees, coarse "
-                          "coordinates), which may take as long again"));
+  align->add_flag(
+      "--no-diagnose", settings->no_diagnose,
+      wrapped("do not look for the cause of a refusal (mirrored or flat clouds, another scale, degrees, coarse "
+              "coordinates), which may take as long again"));
   align
       ->add_option("--max-points", settings->max_points,
                    wrapped("a cloud with more points is streamed through the voxel filter instead of kept whole; "
