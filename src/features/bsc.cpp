@@ -45,9 +45,9 @@ WeightTable make_weights() {
 }
 const WeightTable weights = make_weights();
 
-// Sums per nearest cell for the patch around it, three rows each: a row's weights, then its weighted depths. One ring of
-// cells outside the grid still reaches into it; what lies further out goes into a last cell that nobody reads, which is
-// cheaper than a branch.
+// Sums per nearest cell for the patch around it, three rows each: a row's weights, then its weighted depths. One ring
+// of cells outside the grid still reaches into it; what lies further out goes into a last cell that nobody reads, which
+// is cheaper than a branch.
 constexpr int ring_side = side + 2, ring_cells = ring_side * ring_side;
 using SumRow = float __attribute__((vector_size(32)));
 struct Patches {
@@ -99,32 +99,26 @@ IGSP_MULTIVERSION void accumulate(const float* a, const float* b, const float* c
 // Sums in fixed point: integer addition has no order, so flips stay exact permutations. Truncation is symmetric.
 constexpr float fixed_one = 1 << 11;
 using FixedRow = std::int32_t __attribute__((vector_size(32)));
-using FixedHalf = std::int32_t __attribute__((vector_size(16), aligned(4), may_alias));
 struct CellSums {
-  std::array<std::int32_t, cells> weight{};
-  std::array<std::int32_t, cells> weighted_depth{};
+  std::array<std::int32_t, cells> weight;
+  std::array<std::int32_t, cells> weighted_depth;
 };
 
 IGSP_MULTIVERSION void sum_patches(const Patches& patches, CellSums& sums) {
-  // A margin of one ring takes what falls outside the grid; the zero at a row's end falls on the cell after it.
-  constexpr int margin_side = ring_side + 2;
-  std::int32_t weight[margin_side * margin_side + 1] = {}, depth[margin_side * margin_side + 1] = {};
-  for (int i = 0; i < ring_side; ++i) {
-    for (int j = 0; j < ring_side; ++j) {  // down a column: what is loaded was stored as a whole the step before
-      const SumRow* patch = patches.row + (j * ring_side + i) * 3;
-      if (patch[1][1] == 0) continue;  // no point: the weight at the nearest cell is never 0
+  for (int j = 0; j < side; ++j) {
+    // What the patches of three rows of the ring add to row j, per column of the ring and column of the patch; ...
+    FixedRow columns[ring_side] = {};
+    for (int i = 0; i < ring_side; ++i) {
       for (int row = 0; row < 3; ++row) {
-        const FixedRow fixed = __builtin_convertvector(patch[row] * fixed_one, FixedRow);
-        const int first = (j + row) * margin_side + i;
-        *reinterpret_cast<FixedHalf*>(weight + first) += __builtin_shufflevector(fixed, fixed, 0, 1, 2, 3);
-        *reinterpret_cast<FixedHalf*>(depth + first) += __builtin_shufflevector(fixed, fixed, 4, 5, 6, 7);
+        const SumRow& sum = patches.row[((j + 2 - row) * ring_side + i) * 3 + row];
+        columns[i] += __builtin_convertvector(sum * fixed_one, FixedRow);
       }
     }
-  }
-  for (int cell = 0; cell < cells; ++cell) {
-    const int margin_cell = (cell / side + 2) * margin_side + cell % side + 2;
-    sums.weight[cell] = weight[margin_cell];
-    sums.weighted_depth[cell] = depth[margin_cell];
+    // ... then the three columns of the ring that reach a cell.
+    for (int i = 0; i < side; ++i) {
+      sums.weight[j * side + i] = columns[i][2] + columns[i + 1][1] + columns[i + 2][0];
+      sums.weighted_depth[j * side + i] = columns[i][6] + columns[i + 1][5] + columns[i + 2][4];
+    }
   }
 }
 
@@ -166,7 +160,8 @@ IGSP_MULTIVERSION std::uint64_t comparison_bits(const std::int32_t* value) {
   return packed(far);
 }
 
-IGSP_MULTIVERSION void describe_plane(const CellSums& sums, int plane, std::size_t support_size, Descriptor& descriptor) {
+IGSP_MULTIVERSION void describe_plane(const CellSums& sums, int plane, std::size_t support_size,
+                                      Descriptor& descriptor) {
   // Normalised density rho = (W / u^2) / (n / (pi R^2)) with R = 3.5 u.
   const float rho_per_weight = static_cast<float>(M_PI * 0.25 * side * side / static_cast<double>(support_size));
   constexpr float steps_per_unit = 1 << 14;  // of rho and of the depth in u: fine enough, and sums of squares are exact
