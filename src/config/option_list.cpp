@@ -91,8 +91,8 @@ struct Listed {
   std::size_t section_fields;
 };
 
-// Outside of `usual` pairs are lost. Of nine simulated pairs (park, indoor and object of 30,000 points, seeds 1 to 3) that
-// the default registers, at least seven are registered at every value within it, the others at their defaults.
+// Outside of `usual` pairs are lost. Of nine simulated pairs (park, indoor and object of 30,000 points, seeds 1 to 3)
+// that the default registers, at least seven are registered at every value within it, the others at their defaults.
 constexpr Listed usually(Range usual, Listed listed) {
   listed.option.usual = usual;
   return listed;

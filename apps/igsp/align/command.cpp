@@ -11,12 +11,12 @@
 
 #include "align/answer.hpp"
 #include "align/scale_request.hpp"
+#include "config/option_list.hpp"
 #include "files/cloud_input.hpp"
 #include "files/columns_flag.hpp"
 #include "files/foreign_formats.hpp"
 #include "files/moved_output.hpp"
 #include "files/output_file.hpp"
-#include "config/option_list.hpp"
 #include "igsp/align.hpp"
 #include "igsp/diagnosis.hpp"
 #include "igsp/errors.hpp"
