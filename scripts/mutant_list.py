@@ -34,7 +34,8 @@ MUTANTS = [
     ("estimation/rigid_fit.cpp", "c.cross += pair.weight * t * s.transpose();", "c.cross += pair.weight * s * t.transpose();", "direction of the fit"),
     ("estimation/rigid_fit.cpp", "c.cross(1, 0) - c.cross(0, 1)", "c.cross(0, 1) - c.cross(1, 0)", "levelled fit: sign of the sine"),
     ("estimation/rigid_fit.cpp", "c.cross(0, 0) + c.cross(1, 1)", "c.cross(0, 0) - c.cross(1, 1)", "levelled fit: cosine"),
-    ("estimation/rigid_fit.cpp", "if (c.used < 3 ||", "if (c.used < 2 ||", "three pairs fix a motion"),
+    # Not the count of pairs beside it: one or two always lie on a line.
+    ("estimation/rigid_fit.cpp", "lies_on_a_line(c.source_spread) || lies_on_a_line(c.target_spread)", "false", "pairs on a line fix no rotation"),
     # Evaluation, Eq. 12 to 14
     ("estimation/evaluation.cpp", "return 2 * std::atan2(q.vec()", "return std::atan2(q.vec()", "Eq. 13: whole angle"),
     ("estimation/evaluation.cpp", "std::abs(q.w()));", "q.w());", "Eq. 13: the shorter way"),
