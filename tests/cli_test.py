@@ -395,6 +395,16 @@ class OptionsOfTheCommand(CommandTest):
             with self.subTest(arguments):
                 self.refuses(*pair, *arguments, code=2, saying=words)
 
+    def test_a_value_that_loses_pairs_is_warned_of(self):
+        for flag, usual in [("--descriptor-radius", "in [4, 30]"), ("--pca-radius", "in [3, 50]"),
+                            ("--target-points", "at least 1000")]:
+            run = self.igsp("align", self.source, self.target, flag, "100", "--report", "r.json", code=None)
+            warning = next(line for line in run.stderr.split("\n") if flag in line)
+            self.assertIn(usual, warning)
+            self.assertIn(warning.removeprefix("igsp: warning: "), json.loads((self.folder / "r.json").read_text())["warnings"])
+            quiet = self.igsp("align", self.source, self.target, flag, "100", "--quiet", code=None)
+            self.assertEqual(quiet.stderr, "")
+
     def test_unknown_commands_and_missing_arguments(self):
         self.refuses("aling", self.source, code=2, saying="did you mean align?")
         self.refuses("align", code=2, saying="SOURCE")
@@ -419,7 +429,7 @@ class OptionsOfTheCommand(CommandTest):
             self.assertIn(f"igsp {command} ", self.igsp(command, "--help").stdout.split("Example")[1])
         text = " ".join(self.igsp("align", "--help").stdout.split())
         self.assertIn("--pca-radius NUMBER r_f: sphere of the principal component analysis [voxels]; in (0, 100]; "
-                      "default 6", text)
+                      "usual: in [3, 50]; default 6", text)
         for flag in ["--voxel-size", "--dof", "--threads", "--no-refinement", "--config", "--force"]:
             self.assertIn(f"{flag} ", text)
 

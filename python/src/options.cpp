@@ -73,7 +73,7 @@ Keywords described(const Option& option) {
   entry["kind"] = kinds[static_cast<std::size_t>(option.kind)];
   entry["unit"] = option.unit;
   entry["choices"] = std::vector<std::string_view>(option.choices.begin(), option.choices.end());
-  entry["admissible"] = admissible_values(option);
+  entry["admissible"] = values_in_words(option);
   entry["default"] = option.get(Options{});
   entry["help"] = option.help;
   return entry;

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "igsp/options.hpp"
 
@@ -38,6 +39,7 @@ struct Option {
   std::string_view flag;     ///< "--pca-radius"
   std::string_view unit;     ///< empty: a pure number
   Range range;               ///< integer and real only
+  Range usual;               ///< within the range; values outside of it are known to lose pairs
   std::string_view help;
   OptionKind kind;
   std::span<const std::string_view> choices;  ///< choice only
@@ -53,6 +55,12 @@ std::string_view name_in_section(const Option& option);
 
 /// "greater than 0" or "one of direct, hypotheses".
 std::string admissible_values(const Option& option);
+
+/// "in (0, 100]; usual: in [4, 30]": the admissible values and, where they are fewer, the usual ones.
+std::string values_in_words(const Option& option);
+
+/// A warning for every value that is admissible and not usual, with what is.
+std::vector<std::string> unusual_values(const Options& options);
 
 /// Throws InvalidArgument that names the option, the value and what is admissible.
 void check(const Option& option, const OptionValue& value);

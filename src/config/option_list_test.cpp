@@ -161,6 +161,29 @@ TEST(Validate, RefusesEveryRealOptionThatIsNotFinite) {
   }
 }
 
+TEST(UnusualValues, NameTheOptionAndWhatIsUsual) {
+  for (const std::string_view name : {"default", "paper"}) EXPECT_TRUE(unusual_values(preset(name)).empty()) << name;
+  Options options;
+  options.descriptor.radius = 100;
+  EXPECT_EQ(unusual_values(options), std::vector<std::string>{"--descriptor-radius is 100.0 [voxels]: pairs are lost "
+                                                              "that way; usual is in [4, 30], the default 7.0"});
+  options = {};
+  options.keypoints.pca_radius = 100;
+  options.scale.target_points = 100;
+  EXPECT_EQ(unusual_values(options).size(), 2u);
+  options.scale.target_points = 1'000'000;
+  options.keypoints.pca_radius = 3;
+  EXPECT_TRUE(unusual_values(options).empty());
+}
+
+TEST(UnusualValues, AreAdmissible) {
+  for (const Option& option : option_list()) {
+    for (const double end : {option.usual.low, option.usual.high}) {
+      if (std::isfinite(end)) EXPECT_TRUE(contains(option.range, end)) << option.key;
+    }
+  }
+}
+
 TEST(AssignText, ReadsEveryKind) {
   Options options;
   assign_text(options, find("keypoints.pca_radius"), "9.5");

@@ -100,6 +100,24 @@ std::string admissible_values(const Option& option) {
   return range.empty() ? std::string(expected(option.kind)) : range;
 }
 
+std::string values_in_words(const Option& option) {
+  const std::string usual = to_string(option.usual);
+  return usual.empty() ? admissible_values(option) : fmt::format("{}; usual: {}", admissible_values(option), usual);
+}
+
+std::vector<std::string> unusual_values(const Options& options) {
+  std::vector<std::string> warnings;
+  for (const Option& option : option_list()) {
+    const OptionValue value = option.get(options);
+    const bool is_number = option.kind == OptionKind::integer || option.kind == OptionKind::real;
+    if (!is_number || contains(option.usual, number(value))) continue;
+    warnings.push_back(fmt::format("{} is {}{}: pairs are lost that way; usual is {}, the default {}", option.flag,
+                                   to_string(value), option.unit.empty() ? "" : fmt::format(" [{}]", option.unit),
+                                   to_string(option.usual), to_string(option.get(Options{}))));
+  }
+  return warnings;
+}
+
 void check(const Option& option, const OptionValue& value) {
   if (!has_kind(option.kind, value)) fail_kind(option, to_string(value));
   if (admissible(option, value)) return;

@@ -158,7 +158,7 @@ std::string options_to_toml(const Options& options) {
       section = option.section;
       text += fmt::format("\n[{}]\n", section);
     }
-    const std::string range = option.kind == OptionKind::boolean ? "" : "; " + admissible_values(option);
+    const std::string range = option.kind == OptionKind::boolean ? "" : "; " + values_in_words(option);
     const std::string unit = option.unit.empty() ? "" : fmt::format(" [{}]", option.unit);
     const std::string assignment = fmt::format("{} = {}", name_in_section(option), value_text(option, options));
     text += fmt::format("{:<32}# {}{}{}\n", assignment, option.help, unit, range);

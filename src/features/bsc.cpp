@@ -19,10 +19,11 @@ static_assert(bits == bsc_bits && bits <= 64 * bsc_words);
 // tabulated over the position inside the nearest cell, in 1/16 u. Steps are centred on 0 and rounding is symmetric, so
 // a flipped point finds exactly the flipped weights.
 constexpr int steps = 16;
-// 9 weights padded to 16: a generic vector, which the compiler lowers to whatever width the machine has.
-using Patch = float __attribute__((vector_size(64)));
+// A row of a patch: three weights and a zero. Generic vectors, which the compiler lowers to whatever width the machine
+// has.
+using WeightRow = float __attribute__((vector_size(16)));
 struct WeightTable {
-  Patch weight[(steps + 1) * (steps + 1)];
+  WeightRow row[(steps + 1) * (steps + 1) * 3];
 };
 
 WeightTable make_weights() {
@@ -34,7 +35,7 @@ WeightTable make_weights() {
         for (int di = -1; di <= 1; ++di) {
           const double squared = (di - x) * (di - x) + (dj - y) * (dj - y);
           // g = exp(-r^2 / (2 (u/2)^2)), lengths in u
-          table.weight[b * (steps + 1) + a][(dj + 1) * 3 + di + 1] =
+          table.row[(b * (steps + 1) + a) * 3 + dj + 1][di + 1] =
               squared <= 2.25 ? static_cast<float>(std::exp(-2.0 * squared)) : 0.0f;
         }
       }
@@ -44,65 +45,80 @@ WeightTable make_weights() {
 }
 const WeightTable weights = make_weights();
 
-// Sums per nearest cell: 9 weights and 9 weighted depths for the patch around it. One ring of cells outside the grid
-// still reaches into it.
-constexpr int ring_side = side + 2;
-struct alignas(64) Patches {
-  Patch density[ring_side * ring_side];
-  Patch depth[ring_side * ring_side];
+// Sums per nearest cell for the patch around it, three rows each: a row's weights, then its weighted depths. One ring
+// of cells outside the grid still reaches into it; what lies further out goes into a last cell that nobody reads, which
+// is cheaper than a branch.
+constexpr int ring_side = side + 2, ring_cells = ring_side * ring_side;
+using SumRow = float __attribute__((vector_size(32)));
+struct Patches {
+  SumRow row[(ring_cells + 1) * 3];
 };
 
-// a, b: in-plane coordinates, c: depth, all in cells (u).
-IGSP_MULTIVERSION void accumulate(const float* a, const float* b, const float* c, std::size_t size, Patches& patches) {
-  constexpr int block = 64;
-  int cell[block], step[block];
-  for (std::size_t begin = 0; begin < size; begin += block) {
+constexpr int block = 64;  // points
+// The first row of every point's patch and of its weights.
+struct Places {
+  int patch[block], weight[block];
+};
+
+// a, b: in-plane coordinates in cells (u).
+inline __attribute__((always_inline)) Places places_of(const float* a, const float* b, int size) {
+  Places places;
+  for (int i = 0; i < size; ++i) {
+    const float ca = std::nearbyint(a[i]), cb = std::nearbyint(b[i]);
+    const bool near = std::abs(ca) <= half + 1 && std::abs(cb) <= half + 1;
+    const int sa = static_cast<int>(std::nearbyint((a[i] - ca) * steps)) + steps / 2;
+    const int sb = static_cast<int>(std::nearbyint((b[i] - cb) * steps)) + steps / 2;
+    places.weight[i] = (sb * (steps + 1) + sa) * 3;
+    places.patch[i] =
+        (near ? (static_cast<int>(cb) + half + 1) * ring_side + static_cast<int>(ca) + half + 1 : ring_cells) * 3;
+  }
+  return places;
+}
+
+inline __attribute__((always_inline)) void add_point(const WeightRow* weight, float depth, SumRow* patch) {
+  const SumRow factor{1, 1, 1, 1, depth, depth, depth, depth};
+  for (int row = 0; row < 3; ++row) {
+    patch[row] += __builtin_shufflevector(weight[row], weight[row], 0, 1, 2, 3, 0, 1, 2, 3) * factor;
+  }
+}
+
+// Points in cells along the frame's axes. The three planes in one loop: each waits for its own last sum only.
+IGSP_MULTIVERSION void accumulate(const float* a, const float* b, const float* c, std::size_t size,
+                                  std::array<Patches, planes>& patches) {
+  for (std::size_t begin = 0; begin < size; begin += block, a += block, b += block, c += block) {
     const int count = static_cast<int>(std::min<std::size_t>(block, size - begin));
+    const Places xy = places_of(a, b, count), xz = places_of(a, c, count), yz = places_of(b, c, count);
     for (int i = 0; i < count; ++i) {
-      const float ca = std::nearbyint(a[begin + i]), cb = std::nearbyint(b[begin + i]);
-      const bool near = std::abs(ca) <= half + 1 && std::abs(cb) <= half + 1;
-      const int sa = static_cast<int>(std::nearbyint((a[begin + i] - ca) * steps)) + steps / 2;
-      const int sb = static_cast<int>(std::nearbyint((b[begin + i] - cb) * steps)) + steps / 2;
-      step[i] = sb * (steps + 1) + sa;
-      cell[i] = near ? (static_cast<int>(cb) + half + 1) * ring_side + static_cast<int>(ca) + half + 1 : -1;
-    }
-    for (int i = 0; i < count; ++i) {
-      if (cell[i] < 0) continue;
-      const Patch& weight = weights.weight[step[i]];
-      patches.density[cell[i]] += weight;
-      patches.depth[cell[i]] += c[begin + i] * weight;
+      add_point(weights.row + xy.weight[i], c[i], patches[0].row + xy.patch[i]);
+      add_point(weights.row + xz.weight[i], b[i], patches[1].row + xz.patch[i]);
+      add_point(weights.row + yz.weight[i], a[i], patches[2].row + yz.patch[i]);
     }
   }
 }
 
 // Sums in fixed point: integer addition has no order, so flips stay exact permutations. Truncation is symmetric.
 constexpr float fixed_one = 1 << 11;
-using FixedPatch = std::int32_t __attribute__((vector_size(64)));
+using FixedRow = std::int32_t __attribute__((vector_size(32)));
 struct CellSums {
-  std::array<std::int32_t, cells> weight{};
-  std::array<std::int32_t, cells> weighted_depth{};
+  std::array<std::int32_t, cells> weight;
+  std::array<std::int32_t, cells> weighted_depth;
 };
 
 IGSP_MULTIVERSION void sum_patches(const Patches& patches, CellSums& sums) {
-  // A margin of one ring takes what falls outside the grid.
-  constexpr int margin_side = ring_side + 2;
-  std::int32_t weight[margin_side * margin_side] = {}, depth[margin_side * margin_side] = {};
-  for (int j = 0; j < ring_side; ++j) {
+  for (int j = 0; j < side; ++j) {
+    // What the patches of three rows of the ring add to row j, per column of the ring and column of the patch; ...
+    FixedRow columns[ring_side] = {};
     for (int i = 0; i < ring_side; ++i) {
-      const int nearest = j * ring_side + i;
-      if (patches.density[nearest][4] == 0) continue;  // no point: the weight at the nearest cell is never 0
-      const FixedPatch w = __builtin_convertvector(patches.density[nearest] * fixed_one, FixedPatch);
-      const FixedPatch d = __builtin_convertvector(patches.depth[nearest] * fixed_one, FixedPatch);
-      for (int k = 0; k < 9; ++k) {
-        weight[(j + k / 3) * margin_side + i + k % 3] += w[k];
-        depth[(j + k / 3) * margin_side + i + k % 3] += d[k];
+      for (int row = 0; row < 3; ++row) {
+        const SumRow& sum = patches.row[((j + 2 - row) * ring_side + i) * 3 + row];
+        columns[i] += __builtin_convertvector(sum * fixed_one, FixedRow);
       }
     }
-  }
-  for (int cell = 0; cell < cells; ++cell) {
-    const int margin_cell = (cell / side + 2) * margin_side + cell % side + 2;
-    sums.weight[cell] = weight[margin_cell];
-    sums.weighted_depth[cell] = depth[margin_cell];
+    // ... then the three columns of the ring that reach a cell.
+    for (int i = 0; i < side; ++i) {
+      sums.weight[j * side + i] = columns[i][2] + columns[i + 1][1] + columns[i + 2][0];
+      sums.weighted_depth[j * side + i] = columns[i][6] + columns[i + 1][5] + columns[i + 2][4];
+    }
   }
 }
 
@@ -113,45 +129,57 @@ void append_bits(Descriptor& descriptor, int first_bit, std::uint64_t bits_to_se
   }
 }
 
-// bit = |delta - mean| > sigma over the plane's pairs, without division: |n delta - sum| > sqrt(n sum2 - sum^2).
-std::uint64_t comparison_bits(const std::array<std::int32_t, cells>& value) {
-  std::array<std::int32_t, pairs> delta;
-  std::int64_t sum = 0, sum2 = 0;
-  for (int k = 0; k < pairs; ++k) {
-    delta[k] = value[pair_table[k].p] - value[pair_table[k].q];
-    sum += delta[k];
-    sum2 += std::int64_t{delta[k]} * delta[k];
-  }
-  const double scaled_sigma = std::sqrt(static_cast<double>(pairs * sum2 - sum * sum));
+// Flag k as bit k: eight at once, by a product that moves byte i's bit to bit 56 + i.
+template <std::size_t size>
+std::uint64_t packed(const std::array<std::uint8_t, size>& flags) {
+  static_assert(size % 8 == 0 && size <= 64);
   std::uint64_t result = 0;
-  for (int k = 0; k < pairs; ++k) {
-    const auto deviation = static_cast<double>(std::abs(pairs * std::int64_t{delta[k]} - sum));
-    result |= std::uint64_t{deviation > scaled_sigma} << k;
+  for (std::size_t first = 0; first < size; first += 8) {
+    std::uint64_t eight = 0;
+    for (std::size_t i = 0; i < 8; ++i) eight |= std::uint64_t{flags[first + i]} << 8 * i;
+    result |= (eight * 0x0102040810204080u >> 56) << first;
   }
   return result;
 }
 
-void describe_plane(const CellSums& sums, int plane, std::size_t support_size, Descriptor& descriptor) {
+// bit = |delta - mean| > sigma over the plane's pairs, without division: |n delta - sum| > sqrt(n sum2 - sum^2). Values
+// stay below 2^20 (38.5 units of density, all weight in one cell), so that n delta - sum fits.
+IGSP_MULTIVERSION std::uint64_t comparison_bits(const std::int32_t* value) {
+  std::int32_t delta[pairs];
+  for (int k = 0; k < pairs; ++k) delta[k] = value[pair_table[k].p] - value[pair_table[k].q];
+  std::int32_t sum = 0;
+  std::int64_t sum2 = 0;
+  for (int k = 0; k < pairs; ++k) {
+    sum += delta[k];
+    sum2 += std::int64_t{delta[k]} * delta[k];
+  }
+  const double scaled_sigma = std::sqrt(static_cast<double>(pairs * sum2 - std::int64_t{sum} * sum));
+  const auto limit = static_cast<std::int32_t>(scaled_sigma);  // an integer exceeds sigma where it exceeds its floor
+  std::array<std::uint8_t, pairs> far;
+  for (int k = 0; k < pairs; ++k) far[k] = std::abs(pairs * delta[k] - sum) > limit;
+  return packed(far);
+}
+
+IGSP_MULTIVERSION void describe_plane(const CellSums& sums, int plane, std::size_t support_size,
+                                      Descriptor& descriptor) {
   // Normalised density rho = (W / u^2) / (n / (pi R^2)) with R = 3.5 u.
   const float rho_per_weight = static_cast<float>(M_PI * 0.25 * side * side / static_cast<double>(support_size));
   constexpr float steps_per_unit = 1 << 14;  // of rho and of the depth in u: fine enough, and sums of squares are exact
-  std::array<std::int32_t, cells> density, depth;
-  std::uint64_t occupied = 0, empty_pairs = 0;
+  std::int32_t density[cells], depth[cells];
+  std::array<std::uint8_t, (cells + 7) / 8 * 8> occupied{};
   for (int cell = 0; cell < cells; ++cell) {
     const float weight = static_cast<float>(sums.weight[cell]);
     const float rho = weight / fixed_one * rho_per_weight;
-    occupied |= std::uint64_t{rho > 0.1f} << cell;
+    occupied[cell] = rho > 0.1f;
     density[cell] = static_cast<std::int32_t>(rho * steps_per_unit);
     depth[cell] = static_cast<std::int32_t>(static_cast<float>(sums.weighted_depth[cell]) / std::max(weight, 1.0f) *
                                             steps_per_unit);
   }
-  for (int k = 0; k < pairs; ++k) {
-    const bool empty = sums.weight[pair_table[k].p] == 0 && sums.weight[pair_table[k].q] == 0;
-    empty_pairs |= std::uint64_t{empty} << k;
-  }
-  append_bits(descriptor, plane * cells, occupied);
+  std::array<std::uint8_t, pairs> some;
+  for (int k = 0; k < pairs; ++k) some[k] = (sums.weight[pair_table[k].p] | sums.weight[pair_table[k].q]) != 0;
+  append_bits(descriptor, plane * cells, packed(occupied));
   append_bits(descriptor, depth_begin + plane * pairs, comparison_bits(depth));
-  append_bits(descriptor, density_begin + plane * pairs, comparison_bits(density) & ~empty_pairs);
+  append_bits(descriptor, density_begin + plane * pairs, comparison_bits(density) & packed(some));
 }
 
 IGSP_MULTIVERSION void project(const SupportView& support, const Eigen::Matrix3f& to_cells, std::vector<float>& a,
@@ -179,13 +207,11 @@ Descriptor binary_shape_context(const SupportView& support, const Eigen::Matrix3
   const double u = 2 * descriptor_radius / side;
   std::vector<float> a, b, c;
   project(support, (frame.transpose() / u).cast<float>(), a, b, c);
-  const std::array<std::array<const float*, 3>, planes> axes{
-      {{a.data(), b.data(), c.data()}, {a.data(), c.data(), b.data()}, {b.data(), c.data(), a.data()}}};
+  std::array<Patches, planes> patches{};
+  accumulate(a.data(), b.data(), c.data(), support.size, patches);
   for (int plane = 0; plane < planes; ++plane) {
-    Patches patches{};
     CellSums sums;
-    accumulate(axes[plane][0], axes[plane][1], axes[plane][2], support.size, patches);
-    sum_patches(patches, sums);
+    sum_patches(patches[plane], sums);
     describe_plane(sums, plane, support.size, descriptor);
   }
   return descriptor;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/stage_clock.hpp"
 #include "igsp/features.hpp"
 #include "spatial/trimmed_cloud.hpp"
 
@@ -8,9 +9,16 @@ namespace igsp {
 /// Throws InvalidArgument.
 void require_finite(const std::optional<Eigen::Vector3d>& viewpoint);
 
-/// extract_features for a cloud whose stray points are known already, and with a finite viewpoint.
+enum class Description { now, later };
+
+/// extract_features for a cloud whose stray points are known already, and with a finite viewpoint. The frames and
+/// descriptors of the keypoints may be left out until they are needed.
 Features extract_features(const TrimmedCloud& cloud, const std::optional<Eigen::Vector3d>& viewpoint,
-                          const Options& options, const ProgressCallback& progress);
+                          const Options& options, const ProgressCallback& progress,
+                          Description description = Description::now);
+
+/// The frames and descriptors that were left out.
+void describe_where_missing(const Options& options, StageClock& clock, Features& features);
 
 /// The same cloud at voxels twice as large, from its finer ones.
 Features coarser_features(const Features& finer, const Options& options);

@@ -20,7 +20,14 @@ namespace {
 
 constexpr double fine_voxels = 0.5;  // voxels: finer ones brought no accuracy on scans whose truth is known
 
-void describe_keypoints(const PointGrid& grid, const Options& options, const StageClock& clock, Features& features) {
+// The grid decides in which order a support is summed.
+PointGrid support_grid(const Features& features, const Options& options) {
+  return PointGrid(features.points, 0.5 * options.keypoints.pca_radius * features.voxel_size);
+}
+
+// Frames and descriptors of the keypoints.
+void describe_keypoints(const PointGrid& grid, const Options& options, StageClock& clock, Features& features) {
+  clock.start("descriptors");
   const double radius = options.descriptor.radius * features.voxel_size;
   features.frames.resize(features.keypoints.size());
   features.descriptors.resize(features.keypoints.size());
@@ -37,19 +44,15 @@ void describe_keypoints(const PointGrid& grid, const Options& options, const Sta
                   [&](double share) { clock.report(share); });
 }
 
-// Normals, keypoints and descriptors of the voxels.
-void describe(const Options& options, StageClock& clock, Features& features) {
+// Normals and keypoints of the voxels.
+void find_keypoints(const PointGrid& grid, const Options& options, StageClock& clock, Features& features) {
   clock.start("keypoints");
   const double pca_radius = options.keypoints.pca_radius * features.voxel_size;
-  const PointGrid grid(features.points, 0.5 * pca_radius);
   const LocalPca pca = local_pca(grid, pca_radius, options.threads, [&](double share) { clock.report(share); });
   features.curvature = pca.curvature;
   features.normals.resize(features.points.size());
   for (std::size_t i = 0; i < features.points.size(); ++i) features.normals[i] = pca.normals[i].cast<double>();
   features.keypoints = detect_keypoints(features.points, grid, pca, features.voxel_size, options.keypoints);
-
-  clock.start("descriptors");
-  describe_keypoints(grid, options, clock, features);
 }
 
 // Where single precision is at home, and back.
@@ -76,7 +79,7 @@ Features extract_features(const Scan& scan, const Options& options, const Progre
 }
 
 Features extract_features(const TrimmedCloud& trimmed, const std::optional<Eigen::Vector3d>& viewpoint,
-                          const Options& options, const ProgressCallback& progress) {
+                          const Options& options, const ProgressCallback& progress, Description description) {
   const Bounds& bounds = trimmed.bounds();
   if (const double unit = unit_of_length(bounds, bounds, options.scale.voxel_size); unit != 1) {
     return extract_in_unit(unit, trimmed, viewpoint, options, progress);
@@ -100,10 +103,17 @@ Features extract_features(const TrimmedCloud& trimmed, const std::optional<Eigen
   features.fine_points = voxel_centroids(cloud, bounds.min, fine_voxels * features.voxel_size);
   for (Eigen::Vector3d& point : features.fine_points) point -= to_centre;
 
-  describe(options, clock, features);
+  const PointGrid grid = support_grid(features, options);
+  find_keypoints(grid, options, clock, features);
+  if (description == Description::now) describe_keypoints(grid, options, clock, features);
   clock.finish();
   features.timings_s = clock.timings();
   return features;
+}
+
+void describe_where_missing(const Options& options, StageClock& clock, Features& features) {
+  if (features.descriptors.size() == features.keypoints.size()) return;
+  describe_keypoints(support_grid(features, options), options, clock, features);
 }
 
 Features mirrored_features(const Features& features, const Options& options) {
@@ -115,9 +125,8 @@ Features mirrored_features(const Features& features, const Options& options) {
   image.origin = image.origin.cwiseProduct(reflection);
   if (image.viewpoint) *image.viewpoint = image.viewpoint->cwiseProduct(reflection);
   const ProgressCallback silent;
-  const StageClock clock(silent);
-  const PointGrid grid(image.points, 0.5 * options.keypoints.pca_radius * image.voxel_size);
-  describe_keypoints(grid, options, clock, image);
+  StageClock clock(silent);
+  describe_keypoints(support_grid(image, options), options, clock, image);
   return image;
 }
 
@@ -133,7 +142,9 @@ Features coarser_features(const Features& finer, const Options& options) {
   features.fine_points = finer.points;
   features.cloud_points = finer.cloud_points;
   features.stray = finer.stray;
-  describe(options, clock, features);
+  const PointGrid grid = support_grid(features, options);
+  find_keypoints(grid, options, clock, features);
+  describe_keypoints(grid, options, clock, features);
   return features;
 }
 

@@ -13,7 +13,7 @@ ViewpointRequest parse_viewpoint(std::string_view option, std::string_view text)
   if (text == "auto") return {};
   if (text == "none") return {.kind = ViewpointRequest::Kind::none};
   ViewpointRequest request{.kind = ViewpointRequest::Kind::given};
-  const auto fail = [&] [[noreturn]] {
+  const auto fail = [&] {
     throw InvalidArgument(fmt::format(
         "{} is {}; it must be three finite numbers x,y,z in the file's frame (x,y,z! insists), none or auto", option,
         io::in_quotes(text)));

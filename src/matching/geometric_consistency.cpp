@@ -1,5 +1,6 @@
 #include "matching/geometric_consistency.hpp"
 
+#include <bit>
 #include <cmath>
 
 #include "core/multiversion.hpp"
@@ -34,6 +35,12 @@ Arrays make_arrays(std::span<const Candidate> candidates, PointView source, Poin
 struct Limits {
   float length_tolerance, squared_min_length, min_cosine, min_direction_cosine;
 };
+
+IGSP_MULTIVERSION int common_bits(const std::uint64_t* x, const std::uint64_t* y, std::size_t words) {
+  int count = 0;
+  for (std::size_t w = 0; w < words; ++w) count += std::popcount(x[w] & y[w]);
+  return count;
+}
 
 IGSP_MULTIVERSION void agreement_row(const Arrays& arrays, std::size_t c, std::size_t words, Limits limits,
                                      std::uint64_t* row) {
@@ -74,14 +81,19 @@ IGSP_MULTIVERSION void agreement_row(const Arrays& arrays, std::size_t c, std::s
 
 }  // namespace
 
+int ConsistencyGraph::common_neighbours(std::size_t a, std::size_t b) const {
+  return common_bits(row(a).data(), row(b).data(), words_);
+}
+
 ConsistencyGraph consistency_graph(std::span<const Candidate> candidates, PointView source, PointView target,
                                    const ConsistencyOptions& options, int threads) {
   ConsistencyGraph graph(candidates.size());
   const Arrays arrays = make_arrays(candidates, source, target);
   // The angle between rotations is twice that between their quaternions.
-  const Limits limits{
-      static_cast<float>(options.length_tolerance), static_cast<float>(options.min_length * options.min_length),
-      static_cast<float>(std::cos(options.max_angle_rad / 2)), static_cast<float>(std::cos(turned_share * options.max_angle_rad))};
+  const Limits limits{static_cast<float>(options.length_tolerance),
+                      static_cast<float>(options.min_length * options.min_length),
+                      static_cast<float>(std::cos(options.max_angle_rad / 2)),
+                      static_cast<float>(std::cos(turned_share * options.max_angle_rad))};
   const std::size_t tail = candidates.size() % 64;
   parallel_blocks(candidates.size(), threads, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {

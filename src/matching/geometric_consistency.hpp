@@ -33,12 +33,7 @@ class ConsistencyGraph {
     for (const std::uint64_t word : row(a)) count += std::popcount(word);
     return count;
   }
-  int common_neighbours(std::size_t a, std::size_t b) const {
-    int count = 0;
-    const auto x = row(a), y = row(b);
-    for (std::size_t w = 0; w < words_; ++w) count += std::popcount(x[w] & y[w]);
-    return count;
-  }
+  int common_neighbours(std::size_t a, std::size_t b) const;
   template <typename Visit>
   void visit_neighbours(std::size_t a, const Visit& visit) const {
     const auto words = row(a);

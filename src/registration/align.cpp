@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 
 #include "features/extraction.hpp"
 #include "registration/pose_assessment.hpp"
@@ -85,8 +87,19 @@ Result without_extent(const TrimmedCloud& source, const TrimmedCloud& target, co
   return result;
 }
 
-Result align_features(const Features& source, const Features& target, const Transformation* initial,
-                      const Options& options, const ProgressCallback& progress) {
+// Told when the descriptors of both are needed, which they may lack until then.
+using DescribeBoth = std::function<void(StageClock&)>;
+
+SearchOutcome search(CommonFrame& frame, CoarserScale& coarser, const DescribeBoth& describe,
+                     const std::optional<Transformation>& initial, const Options& options, StageClock& clock) {
+  if (initial) return refine_initial(frame, *initial, options, clock);
+  if (options.search == Search::direct) return direct_search(frame, options, clock);
+  const auto describe_finer = [&] { describe(clock); };
+  return hypotheses_search(frame, coarser, describe_finer, options, clock);
+}
+
+Result align_features(const Features& source, const Features& target, const DescribeBoth& describe,
+                      const Transformation* initial, const Options& options, const ProgressCallback& progress) {
   validate(options);
   check_compatible(source, target);
   StageClock clock(progress);
@@ -100,9 +113,9 @@ Result align_features(const Features& source, const Features& target, const Tran
   const PreparedCloud prepared_source(source), prepared_target(target);
   CommonFrame frame(prepared_source, prepared_target, options.descriptor.radius * target.voxel_size, options.threads);
   CoarserScale coarser(source, target, options);
-  const SearchOutcome outcome = initial ? refine_initial(frame, to_local(*initial, source, target), options, clock)
-                                : options.search == Search::direct ? direct_search(frame, options, clock)
-                                                                   : hypotheses_search(frame, coarser, options, clock);
+  std::optional<Transformation> local_initial;
+  if (initial) local_initial = to_local(*initial, source, target);
+  const SearchOutcome outcome = search(frame, coarser, describe, local_initial, options, clock);
   const CommonFrame& scale = outcome.settled_coarse ? coarser.frame() : frame;
   result.loop_voxel_size = scale.target().features.voxel_size;
   result.source_keypoints = keypoints_in_world(scale.source().features);
@@ -142,9 +155,14 @@ Result align_points(const TrimmedScan& source, const TrimmedScan& target, const 
   Options scaled = options;
   scaled.scale.voxel_size = choose_voxel_size(source.cloud, target.cloud, options.scale);
   clock.finish();
-  const Features source_features = extract_features(source.cloud, source.viewpoint, scaled, progress);
-  const Features target_features = extract_features(target.cloud, target.viewpoint, scaled, progress);
-  Result result = align_features(source_features, target_features, initial, scaled, progress);
+  const Description description = options.search == Search::direct ? Description::now : Description::later;
+  Features source_features = extract_features(source.cloud, source.viewpoint, scaled, progress, description);
+  Features target_features = extract_features(target.cloud, target.viewpoint, scaled, progress, description);
+  const DescribeBoth describe = [&](StageClock& at) {
+    describe_where_missing(scaled, at, source_features);
+    describe_where_missing(scaled, at, target_features);
+  };
+  Result result = align_features(source_features, target_features, describe, initial, scaled, progress);
   result.timings_s.insert(result.timings_s.begin(), clock.timings().begin(), clock.timings().end());
   return result;
 }
@@ -192,13 +210,14 @@ Result align_extracted(const Features& source, const Features& target, const Tra
                                    : bounds_of(features.points, "features");
   };
   const double unit = unit_of_length(local_bounds(source), local_bounds(target), target.voxel_size);
-  if (unit == 1) return align_features(source, target, initial, options, progress);
+  const DescribeBoth nothing_missing = [](StageClock&) {};
+  if (unit == 1) return align_features(source, target, nothing_missing, initial, options, progress);
   Features scaled_source = source, scaled_target = target;
   scale_lengths(scaled_source, 1 / unit);
   scale_lengths(scaled_target, 1 / unit);
   const auto guess = guess_in_unit(initial, unit);
-  Result result =
-      align_features(scaled_source, scaled_target, guess ? &*guess : nullptr, options_in_unit(options, unit), progress);
+  Result result = align_features(scaled_source, scaled_target, nothing_missing, guess ? &*guess : nullptr,
+                                 options_in_unit(options, unit), progress);
   scale_lengths(result, unit);
   return result;
 }

@@ -20,8 +20,11 @@ SearchOutcome direct_search(const CommonFrame& frame, const Options& options, St
   const double share = 1.0 / schedule.max_iterations;
   LoopOutcome loop = igsp_loop(input, Transformation::Identity(), schedule, options,
                                [&](int iteration) { clock.report(share * iteration); });
-  SearchOutcome outcome{
-      loop.termination, loop.has_estimate, loop.target_from_source, std::move(loop.iterations), {}, {}};
+  SearchOutcome outcome;
+  outcome.termination = loop.termination;
+  outcome.has_estimate = loop.has_estimate;
+  outcome.target_from_source = loop.target_from_source;
+  outcome.iterations = std::move(loop.iterations);
   if (outcome.has_estimate) {
     FineSurfaces surfaces(frame.source().features, frame.target().features);
     outcome.precision = precision_at(surfaces, outcome.target_from_source, options.degrees_of_freedom);

@@ -194,7 +194,8 @@ SearchOutcome finished(std::vector<Rival> ranked, CommonFrame& scale, const Comm
 
 }  // namespace
 
-SearchOutcome hypotheses_search(CommonFrame& frame, CoarserScale& coarser, const Options& options, StageClock& clock) {
+SearchOutcome hypotheses_search(CommonFrame& frame, CoarserScale& coarser, const std::function<void()>& describe_finer,
+                                const Options& options, StageClock& clock) {
   std::vector<Rival> found;
   if (coarser.is_there()) {
     found = search_at(coarser.frame(), {}, options, clock);
@@ -203,6 +204,7 @@ SearchOutcome hypotheses_search(CommonFrame& frame, CoarserScale& coarser, const
       return finished(std::move(found), coarser.frame(), frame, options, clock);
     }
   }
+  describe_finer();
   return finished(search_at(frame, found, options, clock), frame, frame, options, clock);
 }
 

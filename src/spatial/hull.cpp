@@ -22,6 +22,12 @@ int column_of(double coordinate, double min, double max) {
   return max > min ? std::clamp(static_cast<int>(columns * (coordinate - min) / (max - min)), 0, columns - 1) : 0;
 }
 
+// The lowest or highest point of a column. Its height lies beside it: most points are compared with that alone.
+struct Extreme {
+  double z = 0;
+  const Eigen::Vector3d* point = nullptr;
+};
+
 // By height; of the same height any rule serves that does not ask for the order of the points.
 bool is_lower(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::array{a.z(), a.x(), a.y()} < std::array{b.z(), b.x(), b.y()};
@@ -29,16 +35,17 @@ bool is_lower(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 // The lowest and the highest of every column: all that can lie on the hull, but for the width of a column.
 Points outermost(PointView cloud, const Bounds& bounds) {
-  std::vector<const Eigen::Vector3d*> lowest(columns * columns, nullptr), highest = lowest;
+  std::vector<Extreme> lowest(columns * columns), highest = lowest;
   for (const Eigen::Vector3d& point : cloud) {
     const int column = column_of(point.x(), bounds.min.x(), bounds.max.x()) * columns +
                        column_of(point.y(), bounds.min.y(), bounds.max.y());
-    if (!lowest[column] || is_lower(point, *lowest[column])) lowest[column] = &point;
-    if (!highest[column] || is_lower(*highest[column], point)) highest[column] = &point;
+    Extreme &low = lowest[column], &high = highest[column];
+    if (!low.point || (point.z() <= low.z && is_lower(point, *low.point))) low = {point.z(), &point};
+    if (!high.point || (point.z() >= high.z && is_lower(*high.point, point))) high = {point.z(), &point};
   }
   Points points;
   for (int i = 0; i < columns * columns; ++i) {
-    if (lowest[i]) points.push_back(*lowest[i]), points.push_back(*highest[i]);
+    if (lowest[i].point) points.push_back(*lowest[i].point), points.push_back(*highest[i].point);
   }
   return points;
 }

@@ -26,7 +26,7 @@ std::vector<std::uint32_t> counts_inside(PointView cloud, const Bounds& bounds, 
   const Eigen::Array3i blocks = ((bounds.max - bounds.min) / block_size).array().floor().cast<int>() + 1;
   std::vector<std::uint32_t> counts(static_cast<std::size_t>(blocks.prod()), 0);
   for (const Eigen::Vector3d& point : cloud) {
-    const Eigen::Array3i block = ((point - bounds.min) / block_size).array().floor().cast<int>().min(blocks - 1);
+    const Eigen::Array3i block = ((point - bounds.min) / block_size).array().cast<int>().min(blocks - 1);
     ++counts[(block.z() * blocks.y() + block.y()) * blocks.x() + block.x()];
   }
   const Hull hull(cloud, bounds);

@@ -114,7 +114,7 @@ def test_frames_are_columns_x_y_n(pair, result):
 def test_progress_function_sees_every_stage_and_may_stop(pair):
     seen = []
     igsp.align(*pair, progress=lambda stage, fraction: seen.append((stage, fraction)))
-    assert {"voxel grid", "keypoints", "descriptors", "loop", "verdict"} <= {stage for stage, _ in seen}
+    assert {"voxel grid", "keypoints", "screening", "loop", "verdict"} <= {stage for stage, _ in seen}
     assert all(0 <= fraction <= 1 for _, fraction in seen)
     with pytest.raises(igsp.Cancelled):
         igsp.align(*pair, progress=lambda stage, fraction: stage != "loop")

@@ -1,14 +1,17 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <ctime>
 #include <iostream>
+#include <iterator>
 #include <new>
 #include <optional>
 
 #include "align/answer.hpp"
 #include "align/scale_request.hpp"
+#include "config/option_list.hpp"
 #include "files/cloud_input.hpp"
 #include "files/columns_flag.hpp"
 #include "files/foreign_formats.hpp"
@@ -200,7 +203,8 @@ int run_align(const AlignSettings& settings) {
   const auto max_points = static_cast<std::size_t>(settings.max_points);
   CloudInput source = read_cloud(settings.source, max_points, "read source", progress, settings.read);
   CloudInput target = read_cloud(settings.target, max_points, "read target", progress, settings.read);
-  std::vector<std::string> warnings = warnings_about(source, target, scale);
+  std::vector<std::string> warnings = unusual_values(options);
+  std::ranges::move(warnings_about(source, target, scale), std::back_inserter(warnings));
   settle_viewpoint(source, source_viewpoint);
   settle_viewpoint(target, target_viewpoint);
   if (!source.viewpoint.warning.empty()) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "config/option_list.hpp"
 #include "files/columns_flag.hpp"
 #include "files/output_file.hpp"
 #include "igsp/errors.hpp"
@@ -136,6 +137,9 @@ int run_network(const NetworkSettings& settings) {
     throw InvalidArgument(fmt::format("--max-points is {}; it must be at least 1000", settings.max_points));
   }
   const ScanReading reading = reading_of(settings);
+  for (const std::string& warning : unusual_values(options.pair)) {
+    if (!settings.quiet) std::cerr << "igsp: warning: " << warning << "\n";
+  }
   choose_pairs(options, settings.pairs, reading.files);
   choose_world(options, settings, reading.files);
   if (!settings.moved.empty()) check_moved_scans(settings.moved, reading);

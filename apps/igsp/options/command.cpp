@@ -22,7 +22,7 @@ Json list_of(const Options& options) {
                     {"flag", option.flag},
                     {"value", value},
                     {"unit", option.unit},
-                    {"admissible", option.kind == OptionKind::boolean ? "true or false" : admissible_values(option)},
+                    {"admissible", values_in_words(option)},
                     {"help", option.help}});
   }
   return list;
