@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
     from igsp.option_keywords import OptionKeywords
 
-Engine = Literal["local", "dask"]
 Pairs = Literal["all", "auto"] | Iterable[tuple[int, int]]
 Viewpoints = Sequence[Viewpoint] | Mapping[str, Viewpoint]
 
@@ -54,7 +53,7 @@ def network(
     control: Sequence[Control] = (),
     min_unconfirmed_confidence: float = 0.95,
     min_unconfirmed_matches: int = 35,
-    engine: Engine = "local",
+    engine: Literal["local", "dask"] = "local",
     scheduler: str | None = None,
     progress: Progress = False,
     **options: Unpack[OptionKeywords],
