@@ -19,6 +19,7 @@ class Surface {
       : points_(points), grid_(std::move(grid)), normal_radius_(0), normals_(std::move(normals)) {}
 
   std::size_t size() const { return points_.size(); }
+  PointView points() const { return points_; }
   const Eigen::Vector3d& point(std::size_t i) const { return points_[i]; }
   const PointGrid& grid() const { return grid_; }
   const Eigen::Vector3d& normal(std::size_t i);  ///< unit, sign arbitrary
