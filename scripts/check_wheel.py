@@ -30,7 +30,7 @@ def main():
     for library in ("libtbb", "libfmt", "liblzf"):
         assert any(name.startswith(f"igsp.libs/{library}") for name in names), f"{wheel} has no {library}"
     python = programs / "python"
-    run(python, "-m", "pip", "install", "--quiet", "--only-binary", ":all:", f"{wheel}[las,e57,mesh,test]")
+    run(python, "-m", "pip", "install", "--quiet", "--only-binary", ":all:", f"{wheel}[las,e57,mesh,dask,test]")
     compilers = "import shutil, sys; sys.exit(any(map(shutil.which, ['cc', 'gcc', 'c++', 'g++', 'clang++', 'cmake'])))"
     run(python, "-c", compilers)
     for tool in ("bash", "head"):  # of the tests of pipes

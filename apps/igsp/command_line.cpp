@@ -127,10 +127,11 @@ int parse(CLI::App& app, int argc, char** argv) {
 
 }  // namespace
 
-int run(int argc, char** argv, ForeignFormats formats) {
+int run(int argc, char** argv, ForeignFormats formats, DaskEngine dask) {
   open_closed_streams();
   void (*const on_interrupt)() = formats.on_interrupt;
   use_foreign_formats(std::move(formats));
+  use_dask_engine(std::move(dask));
   CLI::App app("igsp puts one point cloud onto another, without an initial guess", "igsp");
   app.set_version_flag("--version", fmt::format("igsp {}", version));
   app.footer(footer);

@@ -128,11 +128,16 @@ struct Network {
 /// becomes that scan's problem and does not stop the others.
 using FeatureSource = std::function<Features(std::size_t scan)>;
 
-/// Keeps what a run has finished, so that a later one goes on from there. Both may be called from several threads at
-/// once; what they throw ends the run. Empty: nothing is kept.
+/// Keeps what a run has finished, so that a later one goes on from there. `find` and `keep` may be called from several
+/// threads at once; what they throw ends the run. Empty: nothing is kept.
 struct PairStore {
   std::function<std::optional<Result>(std::size_t source, std::size_t target)> find;
   std::function<void(std::size_t source, std::size_t target, const Result& result)> keep;
+
+  /// Told which pairs are tried next, before `find` is asked for them: whoever registers them elsewhere does so now,
+  /// and has `find` hand them out. `report` takes the share done, [0, 1]. Called from the thread that called the
+  /// library.
+  std::function<void(std::span<const ScanPair> pairs, const std::function<void(double)>& report)> prepare;
 };
 
 /// Many scans into one frame, without initial poses: pairs are registered; links that loops contradict are left

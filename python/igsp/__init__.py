@@ -28,7 +28,7 @@ from igsp._core import (
     simulate,
 )
 from igsp._core import version as __version__
-from igsp.errors import Cancelled, NotRegistered
+from igsp.errors import Cancelled, EngineLost, NotRegistered
 from igsp.evaluation import match_quality, pose_error, transform_points
 from igsp.files import (
     read_features,
@@ -49,6 +49,7 @@ __all__ = [
     "CloudSummary",
     "Control",
     "Diagnosis",
+    "EngineLost",
     "Evidence",
     "Features",
     "FreeDirection",

@@ -1,10 +1,14 @@
-"""What goes wrong: ValueError for a caller's mistake, OSError for a file, and the two below."""
+"""What goes wrong: ValueError for a caller's mistake, OSError for a file, and the three below."""
 
 from __future__ import annotations
 
 from igsp._core import Cancelled, Result
 
-__all__ = ["Cancelled", "NotRegistered"]
+__all__ = ["Cancelled", "EngineLost", "NotRegistered"]
+
+
+class EngineLost(RuntimeError):
+    """The workers that `network` ran on are gone for good: the connection to their scheduler is lost."""
 
 
 class NotRegistered(RuntimeError):

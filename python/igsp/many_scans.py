@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,7 +15,9 @@ from igsp import _core
 from igsp._core import Features, Network
 from igsp.arrays import Points, matrix_array
 from igsp.registration import Progress, plain_options, progress_function
-from igsp.viewpoints import Viewpoint, load, settle
+from igsp.progress import ProgressFunction
+from igsp.scan_work import ClusterWork, LocalWork, ScanInput
+from igsp.viewpoints import Viewpoint
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -50,6 +53,8 @@ def network(
     control: Sequence[Control] = (),
     min_unconfirmed_confidence: float = 0.95,
     min_unconfirmed_matches: int = 35,
+    engine: Literal["local", "dask"] = "local",
+    scheduler: str | None = None,
     progress: Progress = False,
     **options: Unpack[OptionKeywords],
 ) -> Network:
@@ -66,31 +71,34 @@ def network(
     `control`: where scans are known to lie in the world, see Control. dof=4 says that the scans are levelled: z is up in
         all of them and in the world.
     `min_unconfirmed_confidence`, `min_unconfirmed_matches`: a link in no loop joins scans only with at least these.
+    `engine`: "dask" for the workers of the Dask cluster whose scheduler has the address `scheduler`, as in
+        "tcp://127.0.0.1:8786". They read files under the same, absolute names and run the same igsp; features of what is
+        in memory here are made here. The answer has the same bits as that of "local", this process.
     `progress`, `options`: as in `align`.
 
     A scan that cannot be read is a NetworkScan with a `problem`, one that cannot be placed a component of its own.
     Raises ValueError (fewer than two scans, one given twice, option out of range), OSError (a folder), TypeError (unknown
-    option), igsp.Cancelled.
+    option), igsp.Cancelled; with "dask" also ImportError (package distributed), OSError (no scheduler there),
+    igsp.EngineLost.
     """
+    if engine not in ("local", "dask"):
+        raise ValueError(f"engine is {engine}; it must be local or dask")
+    if (engine == "dask") != (scheduler is not None):
+        raise ValueError("engine='dask' and scheduler=ADDRESS belong together: give both, or neither")
     inputs = _with_viewpoints(list(_inputs(scans)), viewpoints)
     if len(inputs) < 2:
         raise ValueError("a network needs at least two scans")
     keywords = plain_options(options)
-    with progress_function(progress) as report:
-        _choose_voxel_size(inputs, keywords, report)
-
-        def features(index: int) -> Features:
-            one = inputs[index]
-            if isinstance(one.cloud, Features):
-                return one.cloud
-            loaded = load(one.cloud, one.name)
-            return _core.extract_features(
-                loaded.points, settle(loaded, one.viewpoint, f"viewpoint of {one.name}"), keywords, None
-            )
-
+    with contextlib.ExitStack() as stack:
+        report = stack.enter_context(progress_function(progress))
+        work = LocalWork(inputs, keywords)
+        if scheduler is not None:
+            work = stack.enter_context(ClusterWork(inputs, keywords, report, scheduler))
+        _choose_voxel_size(inputs, keywords, work, report)
         result = _core.register_network(
             len(inputs),
-            features,
+            work.features,
+            work.register_pairs if isinstance(work, ClusterWork) else None,
             keywords,
             min_unconfirmed_confidence,
             min_unconfirmed_matches,
@@ -119,23 +127,16 @@ def _control_in(one: Control) -> tuple[int, Points, float, Points | None, float]
     return int(one.scan), position, float(one.sigma), matrix, float(one.rotation_sigma)
 
 
-@dataclass(frozen=True)
-class _Input:
-    name: str
-    cloud: object  # a name that igsp.read_points takes, or a cloud in memory
-    viewpoint: Viewpoint = "auto"
-
-
-def _inputs(scans: Iterable[object] | str | os.PathLike[str]) -> Iterator[_Input]:
+def _inputs(scans: Iterable[object] | str | os.PathLike[str]) -> Iterator[ScanInput]:
     given = [scans] if isinstance(scans, (str, os.PathLike)) else list(scans)
     files = [os.fspath(one) for one in given if isinstance(one, (str, os.PathLike))]
     _core.scan_files(files)  # the whole list: one that is given twice is an error
     for number, one in enumerate(given):
         if isinstance(one, (str, os.PathLike)):
             for file in _core.scan_files([os.fspath(one)]):
-                yield from (_Input(name, name) for name in _scan_names(file))
+                yield from (ScanInput(name, name) for name in _scan_names(file))
         else:
-            yield _Input(f"scan {number}", one)
+            yield ScanInput(f"scan {number}", one)
 
 
 def _scan_names(file: str) -> list[str]:
@@ -147,20 +148,20 @@ def _scan_names(file: str) -> list[str]:
         return [file]  # reading it says why
 
 
-def _with_viewpoints(inputs: list[_Input], viewpoints: Viewpoints | None) -> list[_Input]:
+def _with_viewpoints(inputs: list[ScanInput], viewpoints: Viewpoints | None) -> list[ScanInput]:
     if viewpoints is None:
         return inputs
     if not isinstance(viewpoints, Mapping):
         if len(viewpoints) != len(inputs):
             raise ValueError(f"{len(viewpoints)} viewpoints for {len(inputs)} scans")
-        return [_Input(one.name, one.cloud, place) for one, place in zip(inputs, viewpoints, strict=True)]
+        return [ScanInput(one.name, one.cloud, place) for one, place in zip(inputs, viewpoints, strict=True)]
     known = {alias: i for i, one in reversed(list(enumerate(inputs))) for alias in _aliases(one.name)}
     places: dict[int, Viewpoint] = {}
     for name, place in viewpoints.items():
         if os.fspath(name) not in known:
             raise ValueError(f"viewpoints: {os.fspath(name)!r} is none of the scans")
         places[known[os.fspath(name)]] = place
-    return [_Input(one.name, one.cloud, places.get(i, "auto")) for i, one in enumerate(inputs)]
+    return [ScanInput(one.name, one.cloud, places.get(i, "auto")) for i, one in enumerate(inputs)]
 
 
 def _aliases(name: str) -> tuple[str, ...]:
@@ -168,7 +169,9 @@ def _aliases(name: str) -> tuple[str, ...]:
     return name, base, os.path.splitext(base)[0]
 
 
-def _choose_voxel_size(inputs: list[_Input], keywords: dict[str, Any], report: Any) -> None:
+def _choose_voxel_size(
+    inputs: list[ScanInput], keywords: dict[str, Any], work: LocalWork, report: ProgressFunction | None
+) -> None:
     """One for all scans: that of features, else the median of what the clouds would have alone."""
     if _core.resolve_options(keywords)["voxel_size"]:
         return
@@ -180,7 +183,7 @@ def _choose_voxel_size(inputs: list[_Input], keywords: dict[str, Any], report: A
         if report is not None and report("scale", number / len(inputs)) is False:
             raise _core.Cancelled
         try:
-            own.append(_core.own_voxel_size(load(one.cloud, one.name).points, keywords))
+            own.append(work.own_voxel_size(number))
         except (ValueError, OSError, ImportError):
             continue  # said again where its features are asked for
     keywords["voxel_size"] = _core.common_voxel_size(own)

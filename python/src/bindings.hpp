@@ -20,6 +20,7 @@ void bind_evaluation(nb::module_& module);
 void bind_files(nb::module_& module);
 void bind_archive(nb::module_& module);
 void bind_simulation(nb::module_& module);
+void bind_dask_engine(nb::module_& module);
 void bind_command_line(nb::module_& module);
 
 }  // namespace igsp::python

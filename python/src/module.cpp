@@ -18,5 +18,6 @@ NB_MODULE(_core, module) {
   bind_files(module);
   bind_archive(module);
   bind_simulation(module);
+  bind_dask_engine(module);
   bind_command_line(module);
 }

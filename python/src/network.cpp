@@ -10,6 +10,9 @@
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
+#include <map>
+#include <mutex>
+
 #include "arrays.hpp"
 #include "igsp/errors.hpp"
 #include "network/common_scale.hpp"
@@ -64,9 +67,45 @@ void choose_pairs(NetworkOptions& options, const std::variant<std::string, std::
   options.pairs = rule == "auto" ? PairRule::automatic : PairRule::all;
 }
 
-Network run(std::size_t scans, nb::handle features, const Keywords& keywords, double min_unconfirmed_confidence,
-            std::size_t min_unconfirmed_matches, const std::variant<std::string, std::vector<ScanPair>>& pairs,
-            const std::optional<std::size_t>& fixed_scan, const std::vector<ControlIn>& control, nb::handle progress) {
+// Pairs that Python's `function(pairs, report)` registers elsewhere; it yields ((source, target), Result). Each is
+// handed out once.
+class PairsElsewhere {
+ public:
+  explicit PairsElsewhere(nb::handle function) : function_(function) {}
+
+  PairStore store() {
+    return {[this](std::size_t source, std::size_t target) {
+              return take({source, target});
+            },
+            {},
+            [this](std::span<const ScanPair> pairs, const std::function<void(double)>& report) { ask(pairs, report); }};
+  }
+
+ private:
+  void ask(std::span<const ScanPair> pairs, const std::function<void(double)>& report) {
+    nb::gil_scoped_acquire lock;
+    const nb::object tick = nb::cpp_function([&report](double done) { report(done); });
+    for (const nb::handle one : function_(std::vector<ScanPair>(pairs.begin(), pairs.end()), tick)) {
+      auto [pair, result] = nb::cast<std::pair<ScanPair, Result>>(one);
+      results_.emplace(pair, std::move(result));
+    }
+  }
+  std::optional<Result> take(const ScanPair& pair) {
+    const std::lock_guard lock(mutex_);
+    auto found = results_.extract(pair);
+    if (found.empty()) return {};
+    return std::move(found.mapped());
+  }
+
+  nb::handle function_;
+  std::mutex mutex_;
+  std::map<ScanPair, Result> results_;
+};
+
+Network run(std::size_t scans, nb::handle features, nb::handle pairs_elsewhere, const Keywords& keywords,
+            double min_unconfirmed_confidence, std::size_t min_unconfirmed_matches,
+            const std::variant<std::string, std::vector<ScanPair>>& pairs, const std::optional<std::size_t>& fixed_scan,
+            const std::vector<ControlIn>& control, nb::handle progress) {
   NetworkOptions options;
   options.pair = options_of(keywords);
   options.min_unconfirmed_confidence = min_unconfirmed_confidence;
@@ -77,9 +116,11 @@ Network run(std::size_t scans, nb::handle features, const Keywords& keywords, do
   const ProgressCallback callback = progress_of(progress);
   std::exception_ptr failure;
   const FeatureSource source = features_of(features, failure);
+  PairsElsewhere elsewhere(pairs_elsewhere);
+  const PairStore store = pairs_elsewhere.is_none() ? PairStore() : elsewhere.store();
   nb::gil_scoped_release unlocked;
   try {
-    return register_network(scans, source, options, callback);
+    return register_network(scans, source, options, callback, store);
   } catch (const Cancelled&) {
     if (failure) std::rethrow_exception(failure);
     throw;
@@ -216,9 +257,9 @@ void bind_network(nb::module_& module) {
         return fmt::format("<Network: {} scans, {} links, {} components>", network.scans.size(), network.links.size(),
                            network.components.size());
       });
-  module.def("register_network", &run, nb::arg("scans"), nb::arg("features"), nb::arg("options"),
-             nb::arg("min_unconfirmed_confidence"), nb::arg("min_unconfirmed_matches"), nb::arg("pairs"),
-             nb::arg("fixed_scan").none(), nb::arg("control"), nb::arg("progress").none());
+  module.def("register_network", &run, nb::arg("scans"), nb::arg("features"), nb::arg("pairs_elsewhere").none(),
+             nb::arg("options"), nb::arg("min_unconfirmed_confidence"), nb::arg("min_unconfirmed_matches"),
+             nb::arg("pairs"), nb::arg("fixed_scan").none(), nb::arg("control"), nb::arg("progress").none());
   module.def("own_voxel_size", &own_voxel_size_of, nb::arg("points").noconvert(), nb::arg("options"));
   module.def("common_voxel_size", &common_voxel_size, nb::arg("own"));
   module.def("scan_files", &scan_files_of, nb::arg("given"));

@@ -139,15 +139,22 @@ void row_baseline(const Row& row) {
 }
 
 #ifdef IGSP_X86_KERNELS
+// Clang has no such attribute.
+#ifdef __clang__
+#define IGSP_WHOLE_VECTORS
+#else
+#define IGSP_WHOLE_VECTORS ",prefer-vector-width=512"
+#endif
+
 __attribute__((target("avx2"))) void row_avx2(const Row& row) {
   compute_row<CountByAdders>(row);
 }
 
-__attribute__((target("avx512f,avx512bw,avx512vl,prefer-vector-width=512"))) void row_avx512(const Row& row) {
+__attribute__((target("avx512f,avx512bw,avx512vl" IGSP_WHOLE_VECTORS))) void row_avx512(const Row& row) {
   compute_row<CountByAdders>(row);
 }
 
-__attribute__((target("avx512f,avx512bw,avx512vl,avx512bitalg,popcnt,prefer-vector-width=512"))) void row_avx512_bitalg(
+__attribute__((target("avx512f,avx512bw,avx512vl,avx512bitalg,popcnt" IGSP_WHOLE_VECTORS))) void row_avx512_bitalg(
     const Row& row) {
   compute_row<CountByInstruction>(row);
 }

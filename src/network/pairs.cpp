@@ -75,6 +75,7 @@ std::vector<ScanPair> listed_pairs(const std::vector<NetworkScan>& scans, std::s
 std::vector<NetworkLink> register_pairs(std::span<const ScanPair> pairs, std::span<const Features* const> features,
                                         const Options& options, const PairStore& store,
                                         const std::function<void(double)>& report) {
+  if (store.prepare) store.prepare(pairs, report);
   Options single = options;
   single.threads = 1;
   std::vector<NetworkLink> links(pairs.size());

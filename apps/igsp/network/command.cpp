@@ -7,6 +7,8 @@
 #include "files/columns_flag.hpp"
 #include "files/output_file.hpp"
 #include "igsp/errors.hpp"
+#include "network/engine.hpp"
+#include "network/first_look.hpp"
 #include "network/inputs.hpp"
 #include "network/moved_scans.hpp"
 #include "network/outputs.hpp"
@@ -28,7 +30,7 @@ struct NetworkSettings {
   std::vector<fs::path> scans;
   fs::path folder, viewpoints, control;
   fs::path moved, merged;
-  std::string fixed_scan;
+  std::string fixed_scan, engine = "local", scheduler;
   bool levelled = false;
   std::string pairs = "all";  // or "auto", or a file
   ReadOptions read;
@@ -62,6 +64,20 @@ void choose_world(NetworkOptions& options, const NetworkSettings& settings, cons
   }
   if (!settings.fixed_scan.empty()) options.fixed_scan = scan_named(settings.fixed_scan, files, "--fix");
   if (!settings.control.empty()) options.control = read_control(settings.control, files);
+}
+
+std::unique_ptr<Engine> engine_for(const NetworkSettings& settings, const ScanReading& reading) {
+  const bool is_dask = settings.engine == "dask";
+  if (!is_dask && settings.engine != "local") {
+    throw InvalidArgument(fmt::format("--engine is {}; it must be local or dask", settings.engine));
+  }
+  if (is_dask == settings.scheduler.empty()) {
+    throw InvalidArgument("--engine dask and --scheduler ADDRESS belong together: give both, or neither");
+  }
+  if (!is_dask) return local_engine(reading);
+  return dask_engine(settings.scheduler, reading, [quiet = settings.quiet](const std::string& line) {
+    if (!quiet) std::cerr << "igsp: warning: " << line << "\n";
+  });
 }
 
 void choose_pairs(NetworkOptions& options, const std::string& pairs, const std::vector<fs::path>& files) {
@@ -100,11 +116,11 @@ int exit_code(const Network& network) {
 }
 
 // That of an earlier run stays; otherwise the scans are looked at.
-void choose_voxel_size(Options& options, NetworkStore& store, const ScanReading& reading, bool quiet,
+void choose_voxel_size(Options& options, NetworkStore& store, Engine& engine, const ScanReading& reading, bool quiet,
                        const ProgressCallback& progress) {
   if (options.scale.voxel_size == 0) options.scale.voxel_size = store.voxel_size();
   if (options.scale.voxel_size == 0) {
-    const FirstLook look = look_at_scans(reading, options.scale, progress);
+    const FirstLook look = look_at_scans(engine, reading, options, progress);
     for (const std::string& warning : look.warnings) {
       if (!quiet) std::cerr << "igsp: warning: " << warning << "\n";
     }
@@ -131,11 +147,13 @@ int run_network(const NetworkSettings& settings) {
     format_of(settings.merged);
     check_writable(settings.merged);
   }
+  const std::unique_ptr<Engine> engine = engine_for(settings, reading);
   create_folder(settings.folder);
   ProgressBar bar(!settings.quiet);
   const ProgressCallback progress = bar.callback();
-  NetworkStore store(settings.folder / "cache", reading, options.pair);
-  choose_voxel_size(options.pair, store, reading, settings.quiet, progress);
+  NetworkStore store(settings.folder / "cache", reading, options.pair, *engine);
+  choose_voxel_size(options.pair, store, *engine, reading, settings.quiet, progress);
+  if (engine->works_ahead()) store.expect_features(progress);
   std::vector<DrawnScan> drawn(reading.files.size());
   const auto features = [&](std::size_t i) {
     Features one = store.features(i, progress);
@@ -154,6 +172,15 @@ int run_network(const NetworkSettings& settings) {
   bar.finish();
   std::cout << network_summary(network);
   return exit_code(network);
+}
+
+// What ends a run of the library is an input's fault to who called the command.
+int run_with_engine(const NetworkSettings& settings) {
+  try {
+    return run_network(settings);
+  } catch (const EngineLost& lost) {
+    throw FileError(lost.what());
+  }
 }
 
 constexpr const char* notes =
@@ -195,6 +222,13 @@ void add_network_command(CLI::App& app, Command& command) {
       ->add_option("--merged", settings->merged,
                    wrapped("one cloud of all scans in the largest frame, a point per half voxel: .ply, .pcd or text"))
       ->type_name("FILE");
+  network
+      ->add_option("--engine", settings->engine,
+                   wrapped("who does the work: local, this process; or dask, the workers of a Dask cluster, which read "
+                           "the scans under the same names (in the command of the Python package); default local"))
+      ->type_name("local|dask");
+  network->add_option("--scheduler", settings->scheduler, "address of the Dask scheduler, such as tcp://HOST:8786")
+      ->type_name("ADDRESS");
   network->add_option("--fix", settings->fixed_scan, "scan whose frame is the world; default the first")
       ->type_name("SCAN");
   network
@@ -229,7 +263,7 @@ void add_network_command(CLI::App& app, Command& command) {
   network->add_flag("--quiet", settings->quiet, "no progress and no warnings, only the answer");
   settings->option_flags = add_option_flags(*network);
   network->footer(notes);
-  network->callback([settings, &command] { command = [settings] { return run_network(*settings); }; });
+  network->callback([settings, &command] { command = [settings] { return run_with_engine(*settings); }; });
 }
 
 }  // namespace igsp::cli

@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double suspicious_ratio = 100;  // of extents: millimetres among metres are 1000
-
 // Not .txt and .csv: in a folder of scans these are as a rule something else. They can be named one by one.
 bool is_cloud(const fs::path& path) {
   static const std::set<std::string> extensions = {".ply", ".pcd", ".xyz", ".pts", ".asc",
@@ -160,32 +158,11 @@ std::vector<ControlPose> read_control(const fs::path& path, const std::vector<fs
   return control;
 }
 
-FirstLook look_at_scans(const ScanReading& reading, const ScaleOptions& scale, const ProgressCallback& progress) {
-  std::vector<double> own;
-  std::vector<std::pair<double, fs::path>> extents;
-  for (std::size_t i = 0; i < reading.files.size(); ++i) {
-    const std::string stage = fmt::format("look at {} of {}", i + 1, reading.files.size());
-    try {
-      const CloudInput cloud = read_cloud(reading.files[i], reading.max_points, stage, progress, reading.read);
-      extents.emplace_back(cloud.bounds.diagonal(), reading.files[i]);
-      own.push_back(own_voxel_size(cloud.points, scale));
-    } catch (const FileError&) {
-      // Said where the scan's features are read.
-    } catch (const InvalidArgument&) {
-    }
-  }
-  FirstLook look{common_voxel_size(std::move(own)), {}};
-  if (extents.empty()) return look;
-  std::vector<std::pair<double, fs::path>> sorted = extents;
-  std::ranges::nth_element(sorted, sorted.begin() + sorted.size() / 2);
-  const double median = sorted[sorted.size() / 2].first;
-  for (const auto& [extent, file] : extents) {
-    if (extent < suspicious_ratio * median && median < suspicious_ratio * extent) continue;
-    look.warnings.push_back(
-        fmt::format("{}: in another unit than the others? Its extent is {:.4g}, their median {:.4g}", file.string(),
-                    extent, median));
-  }
-  return look;
+ScanLook look_at_scan(const ScanReading& reading, std::size_t scan, const ScaleOptions& scale,
+                      const ProgressCallback& progress) {
+  const std::string stage = fmt::format("look at {} of {}", scan + 1, reading.files.size());
+  const CloudInput cloud = read_cloud(reading.files[scan], reading.max_points, stage, progress, reading.read);
+  return {own_voxel_size(cloud.points, scale), cloud.bounds.diagonal()};
 }
 
 Features read_features(const ScanReading& reading, std::size_t scan, const Options& options,

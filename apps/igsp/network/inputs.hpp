@@ -42,12 +42,15 @@ struct ScanReading {
   std::size_t max_points = 20'000'000;
 };
 
-/// What a first look at all scans says.
-struct FirstLook {
-  double voxel_size = 0;              ///< for all; 0 if none can be read
-  std::vector<std::string> warnings;  ///< scans in another unit of length than the others
+/// What a first look at a scan says [units of the cloud].
+struct ScanLook {
+  double voxel_size = 0;  ///< that it would have alone
+  double extent = 0;
 };
-FirstLook look_at_scans(const ScanReading& reading, const ScaleOptions& scale, const ProgressCallback& progress);
+
+/// Throws FileError, InvalidArgument.
+ScanLook look_at_scan(const ScanReading& reading, std::size_t scan, const ScaleOptions& scale,
+                      const ProgressCallback& progress);
 
 /// Throws FileError, InvalidArgument.
 Features read_features(const ScanReading& reading, std::size_t scan, const Options& options,

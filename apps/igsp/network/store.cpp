@@ -30,15 +30,6 @@ void make_folder(const fs::path& folder) {
   if (error) throw FileError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
 }
 
-// What the network does not look at is most of a result.
-Result without_details(Result result) {
-  result.source_keypoints.clear();
-  result.target_keypoints.clear();
-  result.iterations.clear();
-  result.timings_s.clear();
-  return result;
-}
-
 // A full disk must not end a run whose answer may still fit: what is not kept is made again.
 template <typename Write>
 void if_possible(const Write& write) {
@@ -69,8 +60,20 @@ std::string text_of(const ScanReading& reading, std::size_t scan) {
 
 }  // namespace
 
-NetworkStore::NetworkStore(const fs::path& folder, const ScanReading& reading, const Options& options)
-    : folder_(folder / method_number), reading_(reading), options_(options), keys_(reading.files.size()) {
+Result without_details(Result result) {
+  result.source_keypoints.clear();
+  result.target_keypoints.clear();
+  result.iterations.clear();
+  result.timings_s.clear();
+  return result;
+}
+
+NetworkStore::NetworkStore(const fs::path& folder, const ScanReading& reading, const Options& options, Engine& engine)
+    : folder_(folder / method_number),
+      reading_(reading),
+      options_(options),
+      engine_(engine),
+      keys_(reading.files.size()) {
   make_folder(folder_ / "features");
   make_folder(folder_ / "pairs");
   options_text_ = fmt::format("{} {}", version, to_json(what_matters(options_)).dump());
@@ -94,17 +97,35 @@ void NetworkStore::use_voxel_size(double voxel_size) {
   options_text_ = fmt::format("{} {}", version, to_json(what_matters(options_)).dump());
 }
 
-Features NetworkStore::features(std::size_t scan, const ProgressCallback& progress) {
+fs::path NetworkStore::features_file(std::size_t scan, const ProgressCallback& progress) {
   const fs::path& file = reading_.files[scan];
-  const fs::path content = file_of_scan(file);
-  keys_[scan] = fingerprint(fingerprint_of_file(content) + (content == file ? "" : file.filename().string()) +
-                            text_of(reading_, scan) + options_text_);
-  const fs::path kept = folder_ / "features" / keys_[scan];
+  if (keys_[scan].empty()) {
+    keys_[scan] =
+        fingerprint(engine_.fingerprint(scan, progress) + (file_of_scan(file) == file ? "" : file.filename().string()) +
+                    text_of(reading_, scan) + options_text_);
+  }
+  return folder_ / "features" / keys_[scan];
+}
+
+void NetworkStore::expect_features(const ProgressCallback& progress) {
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < reading_.files.size(); ++i) {
+    try {
+      if (!fs::exists(features_file(i, progress))) missing.push_back(i);
+    } catch (const FileError&) {
+      // Said where its features are asked for.
+    }
+  }
+  engine_.expect(missing, options_);
+}
+
+Features NetworkStore::features(std::size_t scan, const ProgressCallback& progress) {
+  const fs::path kept = features_file(scan, progress);
   if (auto features = if_readable(kept, [](const fs::path& path) { return igsp::read_features(path); })) {
     ++features_taken_;
     return std::move(*features);
   }
-  Features features = read_features(reading_, scan, options_, progress);
+  Features features = engine_.features(scan, options_, progress);
   if_possible([&] { write_features(kept, features); });
   return features;
 }
@@ -113,13 +134,30 @@ fs::path NetworkStore::pair_file(std::size_t source, std::size_t target) const {
   return folder_ / "pairs" / fingerprint(keys_[source] + keys_[target]);
 }
 
+void NetworkStore::keep(std::size_t source, std::size_t target, const Result& result) const {
+  if_possible([&] { write_result(pair_file(source, target), without_details(result)); });
+}
+
+void NetworkStore::register_elsewhere(std::span<const ScanPair> pairs, const std::function<void(double)>& report) {
+  std::vector<ScanPair> missing;
+  for (const auto& [source, target] : pairs) {
+    std::error_code ignored;
+    if (!fs::exists(pair_file(source, target), ignored)) missing.emplace_back(source, target);
+  }
+  if (missing.empty()) return;
+  engine_.register_pairs(
+      missing, options_, [&](const ScanPair& pair, const Result& result) { keep(pair.first, pair.second, result); },
+      report);
+}
+
 PairStore NetworkStore::pairs() {
   return {
       [this](std::size_t source, std::size_t target) {
         return if_readable(pair_file(source, target), [](const fs::path& path) { return read_result(path); });
       },
-      [this](std::size_t source, std::size_t target, const Result& result) {
-        if_possible([&] { write_result(pair_file(source, target), without_details(result)); });
+      [this](std::size_t source, std::size_t target, const Result& result) { keep(source, target, result); },
+      [this](std::span<const ScanPair> pairs, const std::function<void(double)>& report) {
+        register_elsewhere(pairs, report);
       },
   };
 }

@@ -1,0 +1,85 @@
+#include "foreign_formats.hpp"
+
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <cctype>
+#include <memory>
+
+#include "arrays.hpp"
+#include "in_python.hpp"
+
+namespace igsp::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The iterator that igsp.formats.read_chunks returns, and its latest chunk.
+struct Chunks {
+  nb::object iterator;
+  PointsIn points;
+};
+
+PointView next_chunk(Chunks& chunks) {
+  return in_python([&] {
+    const nb::object array = nb::steal(PyIter_Next(chunks.iterator.ptr()));
+    if (PyErr_Occurred()) throw nb::python_error();
+    if (!array.is_valid()) return PointView();
+    chunks.points = nb::cast<PointsIn>(array);
+    return view_of(chunks.points);
+  });
+}
+
+std::optional<Eigen::Vector3d> point_of(nb::handle array) {
+  if (array.is_none()) return std::nullopt;
+  return vector_of(nb::cast<VectorIn>(array));
+}
+
+void delete_in_python(Chunks* chunks) {
+  nb::gil_scoped_acquire lock;
+  delete chunks;
+}
+
+cli::ForeignCloud open(nb::handle formats, const fs::path& path) {
+  return in_python([&] {
+    const nb::object iterator = formats.attr("read_chunks")(path.string());
+    const std::shared_ptr<Chunks> chunks(new Chunks{iterator, {}}, delete_in_python);
+    std::string name = cli::file_of_scan(path).extension().string().substr(1);
+    for (char& letter : name) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+    return cli::ForeignCloud{
+        .format = name,
+        .next_chunk = [chunks] { return next_chunk(*chunks); },
+        .dropped =
+            [chunks] { return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("dropped")); }); },
+        .viewpoint = [chunks] { return in_python([&] { return point_of(chunks->iterator.attr("viewpoint")); }); },
+        .scans =
+            [chunks] { return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("scan_count")); }); },
+        .note = [chunks] { return in_python([&] { return nb::cast<std::string>(chunks->iterator.attr("note")); }); }};
+  });
+}
+
+}  // namespace
+
+cli::ForeignFormats foreign_formats(nb::handle formats) {
+  return {
+      .reads =
+          [formats](const fs::path& path) {
+            return in_python([&] { return nb::cast<bool>(formats.attr("is_supported")(path.string())); });
+          },
+      .open = [formats](const fs::path& path) { return open(formats, path); },
+      .scans =
+          [formats](const fs::path& path) {
+            return in_python([&] { return nb::cast<std::vector<std::string>>(formats.attr("scans")(path.string())); });
+          },
+      .moves =
+          [formats](const fs::path& source, const fs::path& output) {
+            return in_python([&] { return nb::cast<bool>(formats.attr("moves")(source.string(), output.string())); });
+          },
+      .write_moved =
+          [formats](const fs::path& source, const fs::path& output, const Transformation& motion) {
+            in_python([&] { formats.attr("write_aligned")(source.string(), output.string(), array_of(motion)); });
+          },
+      .on_interrupt = PyErr_SetInterrupt};
+}
+
+}  // namespace igsp::python
