@@ -78,8 +78,8 @@ TEST(ProgressOfAlign, ReportsOften) {
   for (const char* scene : {"park", "indoor", "object"}) {
     SCOPED_TRACE(scene);
     const std::vector<Report> reports = reports_of(testing::simulated_pair(scene, points));
-    EXPECT_GE(reports.size(), 40u);
-    for (const char* stage : {"screening", "loop"}) {
+    EXPECT_GE(reports.size(), 50u);
+    for (const char* stage : {"common frame", "screening", "loop"}) {
       const auto inside = [&](const Report& r) { return r.stage == stage && r.fraction > 0.0 && r.fraction < 1.0; };
       EXPECT_GE(std::count_if(reports.begin(), reports.end(), inside), 1) << stage;
     }

@@ -21,7 +21,7 @@ Features extract_features(const TrimmedCloud& cloud, const std::optional<Eigen::
 void complete(const Options& options, StageClock& clock, Features& features);
 
 /// The same cloud at voxels twice as large, from its finer ones.
-Features coarser_features(const Features& finer, const Options& options);
+Features coarser_features(const Features& finer, const Options& options, const ProgressCallback& progress);
 
 /// What a plane mirror at the local origin shows, x being negated: the same keypoints, described anew.
 Features mirrored_features(const Features& features, const Options& options);

@@ -130,9 +130,8 @@ Features mirrored_features(const Features& features, const Options& options) {
   return image;
 }
 
-Features coarser_features(const Features& finer, const Options& options) {
-  const ProgressCallback silent;
-  StageClock clock(silent);
+Features coarser_features(const Features& finer, const Options& options, const ProgressCallback& progress) {
+  StageClock clock(progress);
   Features features;
   features.origin = finer.origin;
   features.viewpoint = finer.viewpoint;
@@ -143,6 +142,7 @@ Features coarser_features(const Features& finer, const Options& options) {
   features.cloud_points = finer.cloud_points;
   features.stray = finer.stray;
   complete(options, clock, features);
+  clock.finish();
   return features;
 }
 

@@ -110,7 +110,7 @@ Result align_features(const Features& source, const Features& target, const Comp
 
   clock.start("common frame");
   FinerScale finer(source, target, complete_both, options);
-  CoarserScale coarser(source, target, options);
+  CoarserScale coarser(source, target, options, clock);
   std::optional<Transformation> local_initial;
   if (initial) local_initial = to_local(*initial, source, target);
   const SearchOutcome outcome = search(finer, coarser, local_initial, options, clock);
