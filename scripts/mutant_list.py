@@ -34,7 +34,8 @@ MUTANTS = [
     ("estimation/rigid_fit.cpp", "c.cross += pair.weight * t * s.transpose();", "c.cross += pair.weight * s * t.transpose();", "direction of the fit"),
     ("estimation/rigid_fit.cpp", "c.cross(1, 0) - c.cross(0, 1)", "c.cross(0, 1) - c.cross(1, 0)", "levelled fit: sign of the sine"),
     ("estimation/rigid_fit.cpp", "c.cross(0, 0) + c.cross(1, 1)", "c.cross(0, 0) - c.cross(1, 1)", "levelled fit: cosine"),
-    ("estimation/rigid_fit.cpp", "if (c.used < 3 ||", "if (c.used < 2 ||", "three pairs fix a motion"),
+    # Not the count of pairs beside it: one or two always lie on a line.
+    ("estimation/rigid_fit.cpp", "lies_on_a_line(c.source_spread) || lies_on_a_line(c.target_spread)", "false", "pairs on a line fix no rotation"),
     # Evaluation, Eq. 12 to 14
     ("estimation/evaluation.cpp", "return 2 * std::atan2(q.vec()", "return std::atan2(q.vec()", "Eq. 13: whole angle"),
     ("estimation/evaluation.cpp", "std::abs(q.w()));", "q.w());", "Eq. 13: the shorter way"),
@@ -65,11 +66,11 @@ MUTANTS = [
     ("features/reference_frame.cpp", "0.5 * std::atan2", "std::atan2", "azimuth of the levelled frame"),
     ("features/bsc.cpp", "std::exp(-2.0 * squared)", "std::exp(-squared)", "width of the kernel"),
     ("features/bsc.cpp", "squared <= 2.25", "squared <= 1.0", "reach of the kernel"),
-    ("features/bsc.cpp", "deviation > scaled_sigma", "deviation < scaled_sigma", "comparison with sigma"),
-    ("features/bsc.cpp", "pairs * sum2 - sum * sum", "pairs * sum2", "sigma about the mean"),
+    ("features/bsc.cpp", "- sum) > limit", "- sum) < limit", "comparison with sigma"),
+    ("features/bsc.cpp", "pairs * sum2 - std::int64_t{sum} * sum", "pairs * sum2", "sigma about the mean"),
     ("features/bsc.cpp", "rho > 0.1f", "rho > 0.5f", "threshold of occupied cells"),
-    ("features/bsc.cpp", "comparison_bits(density) & ~empty_pairs", "comparison_bits(density)", "pairs of empty cells"),
-    ("features/bsc.cpp", "{a.data(), c.data(), b.data()}", "{a.data(), b.data(), c.data()}", "second plane"),
+    ("features/bsc.cpp", "comparison_bits(density) & packed(some)", "comparison_bits(density)", "pairs of empty cells"),
+    ("features/bsc.cpp", "places_of(a, c, count)", "places_of(c, a, count)", "second plane"),
     ("spatial/voxel_grid.cpp", "voxel.carries += 1u << (carry_bits * axis)", "voxel.carries += 0u", "sum of a voxel beyond 64 bits"),
     # Candidates and their consistency
     ("matching/candidates.cpp", "(mean - value) / sigma", "(value - mean) / sigma", "smaller distances stand out"),

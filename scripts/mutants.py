@@ -3,7 +3,7 @@
 Works on a copy of the sources in the folder of --build; a mutant that no test notices is a survivor, and one whose text is not in
 the source any more is stale: both end with exit code 1. The list is scripts/mutant_list.py.
 
-usage: mutants.py [--build build/mutants] [--only REGEX] [--jobs N] [--every N] [--list]
+usage: mutants.py [--build build/mutants] [--only REGEX] [--jobs N] [--every N] [--quick] [--list]
 """
 import argparse
 import re
@@ -36,9 +36,9 @@ def copy_sources(source):
 
 
 class Workshop:
-    def __init__(self, build, jobs):
+    def __init__(self, build, jobs, programs):
         # Laid out as the project itself, so that the compiler cache knows most of the objects.
-        self.source, self.build, self.jobs = build, build / "build/release", jobs
+        self.source, self.build, self.jobs, self.programs = build, build / "build/release", jobs, programs
         copy_sources(self.source)
         configured = run("cmake", "--preset", "release", "-DIGSP_BUILD_APPS=OFF", "-DIGSP_TEST_PYTHON=OFF", cwd=build)
         if configured.returncode:
@@ -67,7 +67,7 @@ class Workshop:
             return f"STALE: stands there {text.count(original)} times"
         path.write_text(text.replace(original, mutated))
         try:
-            for program in PROGRAMS:
+            for program in self.programs:
                 if self.make(program).returncode:
                     return "does not build"
                 if test := self.noticed_by(program):
@@ -83,6 +83,7 @@ def main():
     parser.add_argument("--only", default="", help="of files and what is broken")
     parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--jobs", default="2")
+    parser.add_argument("--quick", action="store_true", help="unit tests only: a survivor may be noticed by the others")
     parser.add_argument("--list", action="store_true")
     arguments = parser.parse_args()
     chosen = [m for m in MUTANTS if re.search(arguments.only, f"{m[0]}: {m[3]}")][:: arguments.every]
@@ -92,8 +93,8 @@ def main():
             print(f"{name:<40} {what}{'' if count == 1 else f'  STALE: stands there {count} times'}")
         print(f"{len(chosen)} mutants")
         return any((ROOT / "src" / m[0]).read_text().count(m[1]) != 1 for m in chosen)
-    workshop = Workshop(arguments.build, arguments.jobs)
-    for program in PROGRAMS:
+    workshop = Workshop(arguments.build, arguments.jobs, list(PROGRAMS)[:1] if arguments.quick else list(PROGRAMS))
+    for program in workshop.programs:
         built = workshop.make(program)
         if built.returncode:
             sys.exit(built.stdout)
