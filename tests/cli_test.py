@@ -512,7 +512,7 @@ class Terminal(CommandTest):
     def test_an_interrupt_stops_the_run_and_leaves_no_file(self):
         # With this many voxels the run takes minutes when it is not interrupted.
         long_run = ["align", self.source, self.target, "--voxel-size", "0.05", "--pca-radius", "60",
-                    "--descriptor-radius", "60", "-o", "a.ply", "--transform", "T.txt", "--report", "r.json"]
+                    "--descriptor-radius", "60", "--search", "direct", "-o", "a.ply", "--transform", "T.txt", "--report", "r.json"]
         for stage, number in [(b"read source", signal.SIGTERM), (b"keypoints", signal.SIGINT)]:
             code, sent = self.under_terminal(long_run, wait_for=stage, then=number)
             self.assertEqual(code, 128 + number, sent)

@@ -115,5 +115,20 @@ TEST_P(FreeDirections, Cylinder) {
                {translation_along(axis)});
 }
 
+// Few voxels across the body: what looks like a hold is the unevenness of the voxels.
+class SparseFreeDirections : public ::testing::TestWithParam<std::tuple<std::string, int>> {};
+INSTANTIATE_TEST_SUITE_P(Scenes, SparseFreeDirections,
+                         ::testing::Combine(::testing::Values<std::string>("plane", "sphere", "cylinder", "corridor"),
+                                            ::testing::Values(500, 1000, 3000, 8000)));
+
+TEST_P(SparseFreeDirections, StayRefused) {
+  const auto [scene, points] = GetParam();
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const testing::Pair pair = testing::simulated_pair(scene, points, 0, seed);
+    const Result result = align(pair.source, pair.target);
+    EXPECT_FALSE(result.registered) << "seed " << seed << ": " << result.confidence << ": " << result.reason;
+  }
+}
+
 }  // namespace
 }  // namespace igsp

@@ -56,7 +56,7 @@ struct HypothesisOptions {
   double min_length = 4.0;             ///< shorter lengths say nothing [voxels]
   double max_frame_angle_rad = 0.785;  ///< between the frame rotations of two candidates that agree
   int max_proposed = 24;               ///< hypotheses screened by re-matching in a common frame
-  int max_refined = 8;                 ///< hypotheses refined and ranked
+  int max_refined = 4;                 ///< hypotheses refined and ranked
 };
 
 struct ConvergenceOptions {

@@ -11,17 +11,17 @@ void require_finite(const std::optional<Eigen::Vector3d>& viewpoint);
 
 enum class Description { now, later };
 
-/// extract_features for a cloud whose stray points are known already, and with a finite viewpoint. The frames and
-/// descriptors of the keypoints may be left out until they are needed.
+/// extract_features for a cloud whose stray points are known already, and with a finite viewpoint. Normals, keypoints and
+/// all that belongs to them may be left out until they are needed.
 Features extract_features(const TrimmedCloud& cloud, const std::optional<Eigen::Vector3d>& viewpoint,
                           const Options& options, const ProgressCallback& progress,
                           Description description = Description::now);
 
-/// The frames and descriptors that were left out.
-void describe_where_missing(const Options& options, StageClock& clock, Features& features);
+/// What was left out, if it was.
+void complete(const Options& options, StageClock& clock, Features& features);
 
 /// The same cloud at voxels twice as large, from its finer ones.
-Features coarser_features(const Features& finer, const Options& options);
+Features coarser_features(const Features& finer, const Options& options, const ProgressCallback& progress);
 
 /// What a plane mirror at the local origin shows, x being negated: the same keypoints, described anew.
 Features mirrored_features(const Features& features, const Options& options);

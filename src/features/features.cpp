@@ -103,17 +103,17 @@ Features extract_features(const TrimmedCloud& trimmed, const std::optional<Eigen
   features.fine_points = voxel_centroids(cloud, bounds.min, fine_voxels * features.voxel_size);
   for (Eigen::Vector3d& point : features.fine_points) point -= to_centre;
 
-  const PointGrid grid = support_grid(features, options);
-  find_keypoints(grid, options, clock, features);
-  if (description == Description::now) describe_keypoints(grid, options, clock, features);
+  if (description == Description::now) complete(options, clock, features);
   clock.finish();
   features.timings_s = clock.timings();
   return features;
 }
 
-void describe_where_missing(const Options& options, StageClock& clock, Features& features) {
-  if (features.descriptors.size() == features.keypoints.size()) return;
-  describe_keypoints(support_grid(features, options), options, clock, features);
+void complete(const Options& options, StageClock& clock, Features& features) {
+  if (features.normals.size() == features.points.size()) return;
+  const PointGrid grid = support_grid(features, options);
+  find_keypoints(grid, options, clock, features);
+  describe_keypoints(grid, options, clock, features);
 }
 
 Features mirrored_features(const Features& features, const Options& options) {
@@ -130,9 +130,8 @@ Features mirrored_features(const Features& features, const Options& options) {
   return image;
 }
 
-Features coarser_features(const Features& finer, const Options& options) {
-  const ProgressCallback silent;
-  StageClock clock(silent);
+Features coarser_features(const Features& finer, const Options& options, const ProgressCallback& progress) {
+  StageClock clock(progress);
   Features features;
   features.origin = finer.origin;
   features.viewpoint = finer.viewpoint;
@@ -142,9 +141,8 @@ Features coarser_features(const Features& finer, const Options& options) {
   features.fine_points = finer.points;
   features.cloud_points = finer.cloud_points;
   features.stray = finer.stray;
-  const PointGrid grid = support_grid(features, options);
-  find_keypoints(grid, options, clock, features);
-  describe_keypoints(grid, options, clock, features);
+  complete(options, clock, features);
+  clock.finish();
   return features;
 }
 

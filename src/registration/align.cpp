@@ -87,18 +87,17 @@ Result without_extent(const TrimmedCloud& source, const TrimmedCloud& target, co
   return result;
 }
 
-// Told when the descriptors of both are needed, which they may lack until then.
-using DescribeBoth = std::function<void(StageClock&)>;
+// Fills what the features of both may lack, where that is needed.
+using CompleteBoth = std::function<void(StageClock&)>;
 
-SearchOutcome search(CommonFrame& frame, CoarserScale& coarser, const DescribeBoth& describe,
-                     const std::optional<Transformation>& initial, const Options& options, StageClock& clock) {
-  if (initial) return refine_initial(frame, *initial, options, clock);
-  if (options.search == Search::direct) return direct_search(frame, options, clock);
-  const auto describe_finer = [&] { describe(clock); };
-  return hypotheses_search(frame, coarser, describe_finer, options, clock);
+SearchOutcome search(FinerScale& finer, CoarserScale& coarser, const std::optional<Transformation>& initial,
+                     const Options& options, StageClock& clock) {
+  if (initial) return refine_initial(finer, *initial, options, clock);
+  if (options.search == Search::direct) return direct_search(finer.frame(clock), options, clock);
+  return hypotheses_search(finer, coarser, options, clock);
 }
 
-Result align_features(const Features& source, const Features& target, const DescribeBoth& describe,
+Result align_features(const Features& source, const Features& target, const CompleteBoth& complete_both,
                       const Transformation* initial, const Options& options, const ProgressCallback& progress) {
   validate(options);
   check_compatible(source, target);
@@ -110,20 +109,19 @@ Result align_features(const Features& source, const Features& target, const Desc
   result.target = summary_of(target);
 
   clock.start("common frame");
-  const PreparedCloud prepared_source(source), prepared_target(target);
-  CommonFrame frame(prepared_source, prepared_target, options.descriptor.radius * target.voxel_size, options.threads);
-  CoarserScale coarser(source, target, options);
+  FinerScale finer(source, target, complete_both, options);
+  CoarserScale coarser(source, target, options, clock);
   std::optional<Transformation> local_initial;
   if (initial) local_initial = to_local(*initial, source, target);
-  const SearchOutcome outcome = search(frame, coarser, describe, local_initial, options, clock);
-  const CommonFrame& scale = outcome.settled_coarse ? coarser.frame() : frame;
+  const SearchOutcome outcome = search(finer, coarser, local_initial, options, clock);
+  const CommonFrame& scale = outcome.settled_coarse ? coarser.frame() : finer.frame(clock);
   result.loop_voxel_size = scale.target().features.voxel_size;
   result.source_keypoints = keypoints_in_world(scale.source().features);
   result.target_keypoints = keypoints_in_world(scale.target().features);
   result.source.keypoints = result.source_keypoints.size();
   result.target.keypoints = result.target_keypoints.size();
   clock.start("verdict");
-  judge(frame, coarser, outcome, result);
+  judge(finer, coarser, outcome, clock, result);
   clock.finish();
 
   result.target_from_source = to_world(outcome.target_from_source, source, target);
@@ -155,14 +153,13 @@ Result align_points(const TrimmedScan& source, const TrimmedScan& target, const 
   Options scaled = options;
   scaled.scale.voxel_size = choose_voxel_size(source.cloud, target.cloud, options.scale);
   clock.finish();
-  const Description description = options.search == Search::direct ? Description::now : Description::later;
-  Features source_features = extract_features(source.cloud, source.viewpoint, scaled, progress, description);
-  Features target_features = extract_features(target.cloud, target.viewpoint, scaled, progress, description);
-  const DescribeBoth describe = [&](StageClock& at) {
-    describe_where_missing(scaled, at, source_features);
-    describe_where_missing(scaled, at, target_features);
+  Features source_features = extract_features(source.cloud, source.viewpoint, scaled, progress, Description::later);
+  Features target_features = extract_features(target.cloud, target.viewpoint, scaled, progress, Description::later);
+  const CompleteBoth complete_both = [&](StageClock& at) {
+    complete(scaled, at, source_features);
+    complete(scaled, at, target_features);
   };
-  Result result = align_features(source_features, target_features, describe, initial, scaled, progress);
+  Result result = align_features(source_features, target_features, complete_both, initial, scaled, progress);
   result.timings_s.insert(result.timings_s.begin(), clock.timings().begin(), clock.timings().end());
   return result;
 }
@@ -210,7 +207,7 @@ Result align_extracted(const Features& source, const Features& target, const Tra
                                    : bounds_of(features.points, "features");
   };
   const double unit = unit_of_length(local_bounds(source), local_bounds(target), target.voxel_size);
-  const DescribeBoth nothing_missing = [](StageClock&) {};
+  const CompleteBoth nothing_missing = [](StageClock&) {};
   if (unit == 1) return align_features(source, target, nothing_missing, initial, options, progress);
   Features scaled_source = source, scaled_target = target;
   scale_lengths(scaled_source, 1 / unit);

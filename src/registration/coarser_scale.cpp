@@ -1,12 +1,14 @@
 #include "registration/coarser_scale.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include "features/extraction.hpp"
 
 namespace igsp {
 namespace {
 
+constexpr int stages = 4;                 // keypoints and descriptors of both
 constexpr std::size_t min_voxels = 1200;  // at the finer scale: a quarter of them is left
 
 }  // namespace
@@ -23,7 +25,16 @@ bool CoarserScale::is_there() const {
 }
 
 CommonFrame& CoarserScale::frame() {
-  if (!clouds_) clouds_.emplace(coarser_features(source_, options_), coarser_features(target_, options_), options_);
+  if (clouds_) return clouds_->frame;
+  std::string stage;
+  int begun = 0;
+  const ProgressCallback report = [&](const Progress& progress) {
+    if (progress.stage != stage) ++begun, stage = progress.stage;
+    clock_.report((begun - 1 + progress.fraction) / stages);
+    return true;
+  };
+  Features source = coarser_features(source_, options_, report);
+  clouds_.emplace(std::move(source), coarser_features(target_, options_, report), options_);
   return clouds_->frame;
 }
 

@@ -1,7 +1,10 @@
 #include "registration/common_frame.hpp"
 
+#include <algorithm>
 #include <array>
+#include <limits>
 
+#include "core/multiversion.hpp"
 #include "estimation/robust_fit.hpp"
 #include "features/bsc.hpp"
 #include "igsp/evaluation.hpp"
@@ -38,6 +41,28 @@ Eigen::Vector3d translation_mode(std::span<const PointPair> matches, const Eigen
   return mode;
 }
 
+// A distance above an index: the least of them is the nearest, of equally near ones the first.
+using Nearest = std::uint32_t;
+constexpr int index_bits = 23;  // a distance needs 9
+static_assert(bsc_bits < 1 << (32 - index_bits));
+
+std::uint32_t index_of(Nearest nearest) {
+  return nearest & ((1u << index_bits) - 1);
+}
+
+// The nearest target of source keypoint i, whose distances the row holds; i for every target that it is nearest to.
+IGSP_MULTIVERSION Nearest nearest_in_row(const std::uint16_t* row, std::size_t i, std::vector<Nearest>& of_target) {
+  Nearest nearest = std::numeric_limits<Nearest>::max();
+  Nearest* const target = of_target.data();
+  const auto n = static_cast<std::uint32_t>(of_target.size()), source = static_cast<std::uint32_t>(i);
+  for (std::uint32_t j = 0; j < n; ++j) {
+    const Nearest distance = Nearest{row[j]} << index_bits;
+    nearest = std::min(nearest, distance | j);
+    target[j] = std::min(target[j], distance | source);
+  }
+  return nearest;
+}
+
 }  // namespace
 
 CommonFrame::CommonFrame(const PreparedCloud& source, const PreparedCloud& target, double descriptor_radius,
@@ -69,18 +94,12 @@ std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d&
   const std::size_t m = source.size(), n = target.size();
   if (m == 0 || n == 0) return {};
   const std::vector<std::uint16_t> distance = feature_distance_matrix(source, 1, target, frame.threads());
-  std::vector<std::uint32_t> best_of_source(m, 0), best_of_target(n, 0);
-  for (std::size_t i = 0; i < m; ++i) {
-    for (std::size_t j = 0; j < n; ++j) {
-      const std::uint16_t d = distance[i * n + j];
-      if (d < distance[i * n + best_of_source[i]]) best_of_source[i] = static_cast<std::uint32_t>(j);
-      if (d < distance[best_of_target[j] * n + j]) best_of_target[j] = static_cast<std::uint32_t>(i);
-    }
-  }
+  std::vector<Nearest> of_source(m), of_target(n, std::numeric_limits<Nearest>::max());
+  for (std::size_t i = 0; i < m; ++i) of_source[i] = nearest_in_row(&distance[i * n], i, of_target);
   std::vector<PointPair> matches;
   for (std::size_t i = 0; i < m; ++i) {
-    const std::uint32_t j = best_of_source[i];
-    if (best_of_target[j] == i) matches.push_back({frame.source().keypoints[i], frame.target().keypoints[j]});
+    const Nearest j = index_of(of_source[i]);
+    if (index_of(of_target[j]) == i) matches.push_back({frame.source().keypoints[i], frame.target().keypoints[j]});
   }
   return matches;
 }

@@ -108,20 +108,19 @@ Transformation settle(Surface& source, Surface& target, const Transformation& in
 }
 
 // Down to the noise of the scanner, on the finer voxels.
-void refine(const CommonFrame& frame, const Options& options, StageClock& clock, SearchOutcome& outcome) {
+void refine(const FinerScale& finer, const Options& options, StageClock& clock, SearchOutcome& outcome) {
   clock.start("refinement");
-  FineSurfaces surfaces(frame.source().features, frame.target().features);
+  FineSurfaces surfaces(finer.source(), finer.target());
   if (options.refinement.enabled) {
-    outcome.target_from_source =
-        refine_point_to_plane(surfaces.source, surfaces.target, outcome.target_from_source,
-                              {early_fine_points, fine_points, fine_radii, max_last_steps,
-                               frame.target().features.voxel_size, options.degrees_of_freedom});
+    outcome.target_from_source = refine_point_to_plane(surfaces.source, surfaces.target, outcome.target_from_source,
+                                                       {early_fine_points, fine_points, fine_radii, max_last_steps,
+                                                        finer.target().voxel_size, options.degrees_of_freedom});
   }
   outcome.precision = precision_at(surfaces, outcome.target_from_source, options.degrees_of_freedom);
 }
 
 // The loop at the scale that was searched, the refinement at the finer one.
-void finish(CommonFrame& scale, const CommonFrame& finer, const Options& options, StageClock& clock,
+void finish(CommonFrame& scale, const FinerScale& finer, const Options& options, StageClock& clock,
             SearchOutcome& outcome) {
   clock.start("loop");
   const int iterations = std::min(last_iterations, options.convergence.max_iterations);
@@ -180,40 +179,39 @@ std::vector<Rival> search_at(CommonFrame& scale, std::span<const Rival> found, c
   return rank(scale, candidates, options, clock);
 }
 
-SearchOutcome finished(std::vector<Rival> ranked, CommonFrame& scale, const CommonFrame& finer, const Options& options,
+SearchOutcome finished(std::vector<Rival> ranked, CommonFrame& scale, const FinerScale& finer, const Options& options,
                        StageClock& clock) {
   SearchOutcome outcome;
   if (ranked.empty()) return outcome;
   outcome.has_estimate = true;
   outcome.target_from_source = ranked.front().target_from_source;
   outcome.rivals.assign(ranked.begin() + 1, ranked.end());
-  outcome.settled_coarse = &scale != &finer;
+  outcome.settled_coarse = scale.target().features.voxel_size > finer.target().voxel_size;
   finish(scale, finer, options, clock, outcome);
   return outcome;
 }
 
 }  // namespace
 
-SearchOutcome hypotheses_search(CommonFrame& frame, CoarserScale& coarser, const std::function<void()>& describe_finer,
-                                const Options& options, StageClock& clock) {
+SearchOutcome hypotheses_search(FinerScale& finer, CoarserScale& coarser, const Options& options, StageClock& clock) {
   std::vector<Rival> found;
   if (coarser.is_there()) {
     found = search_at(coarser.frame(), {}, options, clock);
     // Without the refinement the pose would stay as coarse as the scale.
     if (options.refinement.enabled && is_settled(found, coarser.frame().target().features.voxel_size)) {
-      return finished(std::move(found), coarser.frame(), frame, options, clock);
+      return finished(std::move(found), coarser.frame(), finer, options, clock);
     }
   }
-  describe_finer();
-  return finished(search_at(frame, found, options, clock), frame, frame, options, clock);
+  CommonFrame& frame = finer.frame(clock);
+  return finished(search_at(frame, found, options, clock), frame, finer, options, clock);
 }
 
-SearchOutcome refine_initial(CommonFrame& frame, const Transformation& initial, const Options& options,
+SearchOutcome refine_initial(FinerScale& finer, const Transformation& initial, const Options& options,
                              StageClock& clock) {
   SearchOutcome outcome;
   outcome.has_estimate = true;
   outcome.target_from_source = initial;
-  finish(frame, frame, options, clock, outcome);
+  finish(finer.frame(clock), finer, options, clock, outcome);
   return outcome;
 }
 

@@ -31,12 +31,8 @@ struct NormalEquations {
   double weight_sum = 0, weighted_squares = 0;
   Eigen::Vector3d weighted_places = Eigen::Vector3d::Zero();
 
-  // p and its normal as moved by the current pose, q and its normal of the target.
-  void add(const Eigen::Vector3d& p, const Eigen::Vector3d& p_normal, const Eigen::Vector3d& q,
-           const Eigen::Vector3d& q_normal) {
-    const double cosine = p_normal.dot(q_normal);
-    if (std::abs(cosine) < min_normal_cosine) return;
-    const Eigen::Vector3d n = (q_normal + std::copysign(1.0, cosine) * p_normal).normalized();
+  // p as moved by the current pose, q of the target, n the normal of both.
+  void add(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& n) {
     const double residual = n.dot(p - q);
     const double weight = geman_mcclure_weight(residual * residual, loss_scale * loss_scale);
     Vector7 jacobian;
@@ -63,16 +59,29 @@ struct NormalEquations {
   }
 };
 
-// `scale`: of the source, before the pose.
-NormalEquations linearise(Surface& source, Surface& target, const Transformation& pose, double scale, double radius,
-                          std::size_t max_points) {
-  NormalEquations equations{pose.translation(), 0.5 * radius};
+// visit(p, q, n) for points of the source, evenly strided, and their nearest point of the target, where their normals
+// agree: p as moved, n the unit sum of both normals. `scale`: of the source, before the pose.
+template <typename Visit>
+void visit_pairs(Surface& source, Surface& target, const Transformation& pose, double scale, double radius,
+                 std::size_t max_points, const Visit& visit) {
   const std::size_t stride = std::max<std::size_t>(1, source.size() / max_points);
   for (std::size_t i = 0; i < source.size(); i += stride) {
     const Eigen::Vector3d p = pose * (scale * source.point(i));
     const std::int64_t j = target.grid().nearest(p.cast<float>(), static_cast<float>(radius));
-    if (j >= 0) equations.add(p, pose.linear() * source.normal(i), target.point(j), target.normal(j));
+    if (j < 0) continue;
+    const Eigen::Vector3d p_normal = pose.linear() * source.normal(i), &q_normal = target.normal(j);
+    const double cosine = p_normal.dot(q_normal);
+    if (std::abs(cosine) < min_normal_cosine) continue;
+    visit(p, target.point(j), (q_normal + std::copysign(1.0, cosine) * p_normal).normalized());
   }
+}
+
+NormalEquations linearise(Surface& source, Surface& target, const Transformation& pose, double scale, double radius,
+                          std::size_t max_points) {
+  NormalEquations equations{pose.translation(), 0.5 * radius};
+  visit_pairs(
+      source, target, pose, scale, radius, max_points,
+      [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& n) { equations.add(p, q, n); });
   equations.move_centre_to_pairs();
   return equations;
 }
@@ -162,6 +171,17 @@ Linearisation linearise_at(Surface& source, Surface& target, const Transformatio
   const double variance = equations.weight_sum > 0 ? equations.weighted_squares / equations.weight_sum : 0.0;
   return {equations.centre, equations.information.topLeftCorner<6, 6>(), equations.gradient.head<6>(), variance,
           equations.pairs};
+}
+
+std::vector<double> shifts_along_normals(Surface& source, Surface& target, const Transformation& pose, double radius,
+                                         std::size_t max_points, const SmallMotion& motion) {
+  std::vector<double> shifts;
+  visit_pairs(source, target, pose, 1, radius, max_points,
+              [&](const Eigen::Vector3d& p, const Eigen::Vector3d&, const Eigen::Vector3d& n) {
+                const Eigen::Vector3d moved = motion.rotation_rad.cross(p - motion.centre) + motion.translation;
+                shifts.push_back(std::abs(n.dot(moved)));
+              });
+  return shifts;
 }
 
 }  // namespace igsp

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "igsp/point_cloud.hpp"
 #include "spatial/point_grid.hpp"
@@ -19,6 +20,7 @@ class Surface {
       : points_(points), grid_(std::move(grid)), normal_radius_(0), normals_(std::move(normals)) {}
 
   std::size_t size() const { return points_.size(); }
+  PointView points() const { return points_; }
   const Eigen::Vector3d& point(std::size_t i) const { return points_[i]; }
   const PointGrid& grid() const { return grid_; }
   const Eigen::Vector3d& normal(std::size_t i);  ///< unit, sign arbitrary
@@ -69,5 +71,14 @@ struct Linearisation {
 };
 Linearisation linearise_at(Surface& source, Surface& target, const Transformation& pose, double radius,
                            std::size_t max_points);
+
+/// A motion to first order: p moves by rotation x (p - centre) + translation.
+struct SmallMotion {
+  Eigen::Vector3d centre, rotation_rad, translation;
+};
+
+/// How far the motion shifts the pairs of linearise_at along their normals, either way [units of the cloud].
+std::vector<double> shifts_along_normals(Surface& source, Surface& target, const Transformation& pose, double radius,
+                                         std::size_t max_points, const SmallMotion& motion);
 
 }  // namespace igsp

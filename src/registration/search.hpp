@@ -1,12 +1,12 @@
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "core/stage_clock.hpp"
 #include "igsp/result.hpp"
 #include "registration/coarser_scale.hpp"
 #include "registration/common_frame.hpp"
+#include "registration/finer_scale.hpp"
 #include "registration/pose_assessment.hpp"
 
 namespace igsp {
@@ -33,13 +33,11 @@ SearchOutcome direct_search(const CommonFrame& frame, const Options& options, St
 
 /// Hypotheses from geometric consistency, screened in a common frame, refined and ranked; at the coarser scale first
 /// and, where that does not settle it, at the finer one, where the best of the coarser are ranked as well. The best one
-/// through the hybrid loop to the end and, if asked for, point-to-plane refinement. `describe_finer` is called before
-/// the finer keypoints' own descriptors are needed, which most pairs that overlap never come to.
-SearchOutcome hypotheses_search(CommonFrame& frame, CoarserScale& coarser, const std::function<void()>& describe_finer,
-                                const Options& options, StageClock& clock);
+/// through the hybrid loop to the end and, if asked for, point-to-plane refinement.
+SearchOutcome hypotheses_search(FinerScale& finer, CoarserScale& coarser, const Options& options, StageClock& clock);
 
 /// From an initial guess: no search, only the hybrid loop and the refinement; the verdict tells whether it held.
-SearchOutcome refine_initial(CommonFrame& frame, const Transformation& initial, const Options& options,
+SearchOutcome refine_initial(FinerScale& finer, const Transformation& initial, const Options& options,
                              StageClock& clock);
 
 }  // namespace igsp

@@ -12,36 +12,63 @@ constexpr double max_normal = 6.0;      // voxels: farther away is another surfa
 constexpr double touching = 1.0;        // voxels: at a wrong pose of a like surface more lies just beyond
 constexpr double on_surface = 1.5;      // voxels
 
+// visit(i, distance along the normal) for the places of `moved`, evenly strided, that meet the surface of `fixed`; how
+// many were tried. `normal_of(j)`: of the points of `fixed`.
+template <typename NormalOf, typename Visit>
+std::size_t visit_places(PointView moved, PointView fixed, const PointGrid& grid, double v,
+                         const Transformation& fixed_from_moved, const NormalOf& normal_of, const Visit& visit) {
+  const double reach = std::hypot(max_tangential, max_normal) * v;
+  const std::size_t stride = std::max<std::size_t>(1, moved.size() / max_places);
+  std::size_t places = 0;
+  for (std::size_t i = 0; i < moved.size(); i += stride) {
+    ++places;
+    const Eigen::Vector3d p = fixed_from_moved * moved[i];
+    const std::int64_t j = grid.nearest(p.cast<float>(), static_cast<float>(reach));
+    if (j < 0) continue;
+    const Eigen::Vector3d difference = p - fixed[j];
+    const double normal = std::abs(normal_of(j).dot(difference));
+    const double tangential = std::sqrt(std::max(0.0, difference.squaredNorm() - normal * normal));
+    if (tangential < max_tangential * v && normal < max_normal * v) visit(i, normal);
+  }
+  return places;
+}
+
+double share_of(std::size_t covered, std::size_t places) {
+  return places > 0 ? static_cast<double>(covered) / static_cast<double>(places) : 0.0;
+}
+
 }  // namespace
 
 SurfaceContact surface_contact(const PreparedCloud& moved, const PreparedCloud& fixed,
                                const Transformation& fixed_from_moved) {
   const double v = fixed.features.voxel_size;
-  const double reach = std::hypot(max_tangential, max_normal) * v;
-  const std::size_t stride = std::max<std::size_t>(1, moved.features.points.size() / max_places);
   double touching_weight = 0, weight_sum = 0;
-  std::size_t places = 0, met = 0, covered = 0;
-  for (std::size_t i = 0; i < moved.features.points.size(); i += stride) {
-    ++places;
-    const Eigen::Vector3d p = fixed_from_moved * moved.features.points[i];
-    const std::int64_t j = fixed.grid.nearest(p.cast<float>(), static_cast<float>(reach));
-    if (j < 0) continue;
-    const Eigen::Vector3d difference = p - fixed.features.points[j];
-    const double normal = std::abs(fixed.features.normals[j].dot(difference));
-    const double tangential = std::sqrt(std::max(0.0, difference.squaredNorm() - normal * normal));
-    if (tangential >= max_tangential * v || normal >= max_normal * v) continue;
-    ++met;
-    const double weight = 0.002 + std::min<double>(moved.features.curvature[i], 0.05);
-    weight_sum += weight;
-    if (normal < touching * v) touching_weight += weight;
-    covered += normal < on_surface * v;
-  }
+  std::size_t met = 0, covered = 0;
+  const auto normal_of = [&](std::size_t j) -> const Eigen::Vector3d& { return fixed.features.normals[j]; };
+  const std::size_t places = visit_places(moved.features.points, fixed.features.points, fixed.grid, v, fixed_from_moved,
+                                          normal_of, [&](std::size_t i, double normal) {
+                                            ++met;
+                                            const double weight =
+                                                0.002 + std::min<double>(moved.features.curvature[i], 0.05);
+                                            weight_sum += weight;
+                                            if (normal < touching * v) touching_weight += weight;
+                                            covered += normal < on_surface * v;
+                                          });
   SurfaceContact contact;
   // Two pseudo-observations of each kind: few places prove little.
   const double n = static_cast<double>(met);
   contact.share = ((weight_sum > 0 ? touching_weight / weight_sum : 0.0) * n + 2) / (n + 4);
-  if (places > 0) contact.overlap = static_cast<double>(covered) / static_cast<double>(places);
+  contact.overlap = share_of(covered, places);
   return contact;
+}
+
+double overlap_of(PointView moved, Surface& fixed, double voxel_size, const Transformation& fixed_from_moved) {
+  std::size_t covered = 0;
+  const std::size_t places = visit_places(
+      moved, fixed.points(), fixed.grid(), voxel_size, fixed_from_moved,
+      [&](std::size_t j) -> const Eigen::Vector3d& { return fixed.normal(j); },
+      [&](std::size_t, double normal) { covered += normal < on_surface * voxel_size; });
+  return share_of(covered, places);
 }
 
 }  // namespace igsp

@@ -132,6 +132,16 @@ std::optional<RunnerUp> runner_up_of(const Judgement& judgement) {
   return RunnerUp{judgement.rivals.front().target_from_source, std::min(1.0, explained / all)};
 }
 
+// Always at the finer scale, so that it means the same whichever scale the verdict was asked at.
+void tell_overlap(const FinerScale& finer, const Transformation& target_from_source, Result& result) {
+  const Features &source = finer.source(), &target = finer.target();
+  const double v = target.voxel_size, normal_radius = result.options.keypoints.pca_radius * v;
+  Surface source_surface(source.points, PointGrid(source.points, 3.0 * v), normal_radius);
+  Surface target_surface(target.points, PointGrid(target.points, 3.0 * v), normal_radius);
+  result.overlap_source = overlap_of(source.points, target_surface, v, target_from_source);
+  result.overlap_target = overlap_of(target.points, source_surface, v, target_from_source.inverse());
+}
+
 std::string why_refused(const Judgement& judgement) {
   return judgement.rival_odds > judgement.pose.chance_odds()
              ? "; ambiguous: another pose explains the clouds about as well"
@@ -140,20 +150,20 @@ std::string why_refused(const Judgement& judgement) {
 
 }  // namespace
 
-void judge(CommonFrame& frame, CoarserScale& coarser, const SearchOutcome& outcome, Result& result) {
+void judge(FinerScale& finer, CoarserScale& coarser, const SearchOutcome& outcome, StageClock& clock, Result& result) {
   result.termination = outcome.termination;
   result.has_estimate = outcome.has_estimate;
   if (!outcome.has_estimate) {
     result.reason = why_no_estimate(result);
-    name_what_the_target_leaves_free(frame, result);
+    name_what_the_target_leaves_free(finer.frame(clock), result);
     return;
   }
-  CommonFrame& first = outcome.settled_coarse ? coarser.frame() : frame;
+  CommonFrame& first = outcome.settled_coarse ? coarser.frame() : finer.frame(clock);
   const std::vector<Rival> rivals = true_rivals(outcome, first.target().features.voxel_size);
   Judgement judgement = judgement_of(first, outcome.target_from_source, rivals);
   result.evidence.voxel_size = first.target().features.voxel_size;
   if (judgement.confidence < 0.5 && coarser.is_there()) {
-    CommonFrame& second = outcome.settled_coarse ? frame : coarser.frame();
+    CommonFrame& second = outcome.settled_coarse ? finer.frame(clock) : coarser.frame();
     Judgement other = judgement_of(second, outcome.target_from_source, assessed_at(second, rivals));
     if (other.confidence > judgement.confidence) {
       judgement = std::move(other);
@@ -162,10 +172,7 @@ void judge(CommonFrame& frame, CoarserScale& coarser, const SearchOutcome& outco
   }
 
   const PoseAssessment& pose = judgement.pose;
-  // Always at the finer scale, so that it means the same whichever scale the verdict was asked at.
-  const Transformation& target_from_source = outcome.target_from_source;
-  result.overlap_source = surface_contact(frame.source(), frame.target(), target_from_source).overlap;
-  result.overlap_target = surface_contact(frame.target(), frame.source(), target_from_source.inverse()).overlap;
+  tell_overlap(finer, outcome.target_from_source, result);
   result.rmse = outcome.precision.inlier_rmse;
   result.precision = outcome.precision;
   result.precision.free_directions = judgement.free_directions;
@@ -191,7 +198,7 @@ void judge(CommonFrame& frame, CoarserScale& coarser, const SearchOutcome& outco
   }
   if (!result.registered && !is_free && !other_scale) {
     result.reason += why_refused(judgement);
-    name_what_the_target_leaves_free(frame, result);
+    name_what_the_target_leaves_free(finer.frame(clock), result);
   }
 }
 

@@ -6,8 +6,8 @@
 
 namespace igsp {
 
-/// Fills the verdict, its reason, overlap and RMSE of `result` from the pose that a search found. Where the scale of
-/// the frame does not carry it, the coarser one is asked as well: sparse surfaces close there.
-void judge(CommonFrame& frame, CoarserScale& coarser, const SearchOutcome& outcome, Result& result);
+/// Fills the verdict, its reason, overlap and RMSE of `result` from the pose that a search found. Where the scale that
+/// settled the search does not carry it, the other one is asked as well: sparse surfaces close at the coarser.
+void judge(FinerScale& finer, CoarserScale& coarser, const SearchOutcome& outcome, StageClock& clock, Result& result);
 
 }  // namespace igsp

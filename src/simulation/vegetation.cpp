@@ -92,7 +92,8 @@ void add_conifer(Primitives& surfaces, const Vector3d& foot, Random& random) {
 void add_bush(Primitives& surfaces, const Vector3d& foot, double radius, Random& random) {
   const int stems = random.integer(6, 12);
   for (int i = 0; i < stems; ++i) {
-    const Vector3d direction = sideways(random.angle(), random.uniform(0.3, 1.4));
+    const double rise = random.uniform(0.3, 1.4);  // not among the arguments below, whose order is the compiler's
+    const Vector3d direction = sideways(random.angle(), rise);
     const auto stem = add_limb(surfaces, foot, direction, radius, 0.02, 0.008, 2, 0.15, random);
     add_clump(surfaces, stem.back(), 0.5 * radius, random.integer(40, 80), 0.08, random);
   }

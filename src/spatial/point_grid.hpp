@@ -65,6 +65,7 @@ class PointGrid {
 
  private:
   std::int64_t nearest_within(const Eigen::Vector3f& centre, float radius) const;
+  float squared_distance(std::uint32_t i, const Eigen::Vector3f& centre) const;
   float distance_to_cell(float coordinate, int cell) const {
     const float low = cell * cell_size;
     return std::max({low - coordinate, coordinate - low - cell_size, 0.0f});

@@ -82,7 +82,7 @@ RC_GTEST_PROP(VoxelFilter, DoesNotSeeTheOrderOfThePoints, (std::uint64_t seed)) 
 }
 
 TEST(VoxelFilter, MorePointsThan64BitsSumUp) {
-  const std::size_t count = (std::size_t{1} << 22) + 5;  // 2^42 steps each, at the far corner
+  const std::size_t count = std::size_t{3} << 21;  // of up to 2^42 steps each: beyond 2^64 along x and z, not along y
   const Points points(1 << 16, Eigen::Vector3d(0.75, 0.25, 0.9999));
   VoxelFilter filter(Eigen::Vector3d::Zero(), 1.0);
   for (std::size_t left = count; left > 0;) {

@@ -30,7 +30,7 @@ def test_everything_of_the_result_is_there(pair, result):
     identity = result.precision.information @ result.precision.covariance
     np.testing.assert_allclose(identity, np.eye(6), atol=1e-6)
     assert result.options["voxel_size"] == result.voxel_size and result.options["dof"] == 6
-    assert {"keypoints", "loop", "verdict"} <= {stage for stage, _ in result.timings_s}
+    assert {"screening", "loop", "verdict"} <= {stage for stage, _ in result.timings_s}
 
 
 def test_iterations_and_their_correspondences(result, truth):
@@ -114,7 +114,7 @@ def test_frames_are_columns_x_y_n(pair, result):
 def test_progress_function_sees_every_stage_and_may_stop(pair):
     seen = []
     igsp.align(*pair, progress=lambda stage, fraction: seen.append((stage, fraction)))
-    assert {"voxel grid", "keypoints", "screening", "loop", "verdict"} <= {stage for stage, _ in seen}
+    assert {"voxel grid", "common frame", "screening", "loop", "verdict"} <= {stage for stage, _ in seen}
     assert all(0 <= fraction <= 1 for _, fraction in seen)
     with pytest.raises(igsp.Cancelled):
         igsp.align(*pair, progress=lambda stage, fraction: stage != "loop")

@@ -142,6 +142,8 @@ def test_ctrl_c_ends_with_130_and_leaves_no_file(pip_command, laz, scans, tmp_pa
             "60",
             "--descriptor-radius",
             "60",
+            "--search",
+            "direct",
             "-o",
             "a.laz",
             "--transform",
