@@ -28,8 +28,9 @@ constexpr double similar_contact = 0.95;     // ... so a pose that is a little o
 constexpr double search_radius = 1.5;        // voxels
 // A turn by one radian, or a shift by the size of the cloud, that a surface allows moves its places by the unevenness
 // of the voxels, all of them alike: by 0.15 to 1.3 voxels (RMS) on sparse cylinders and corridors, the median being 0.3
-// of that and more. Poses that are fixed: 1.75 voxels and more, or, three boxes on a field, a median below 0.06.
-constexpr double unevenness = 1.5;  // voxels
+// of that and more. Poses that are fixed: 1.5 voxels and more (objects of 1,200 points from 1.1 on), or, three boxes on
+// a field, a median below 0.06.
+constexpr double unevenness = 1.3;  // voxels
 constexpr double alike = 0.15;
 constexpr std::size_t max_points = 1500;
 
