@@ -16,7 +16,8 @@ std::vector<ScanPair> all_pairs(const std::vector<NetworkScan>& scans);
 std::vector<ScanPair> listed_pairs(const std::vector<NetworkScan>& scans, std::span<const ScanPair> given);
 
 /// Registers pairs, several at a time, each on one thread. `features` by scan; only those of the pairs are looked at.
-/// The store is told of all of them first; what it has is taken from it, the rest is kept in it. `report` gets the share done and may throw to stop.
+/// The store is told of all of them first; what it has is taken from it, the rest is kept in it. `report` gets the
+/// share done and may throw to stop.
 std::vector<NetworkLink> register_pairs(std::span<const ScanPair> pairs, std::span<const Features* const> features,
                                         const Options& options, const PairStore& store,
                                         const std::function<void(double)>& report);

@@ -71,6 +71,13 @@ Transformation motion_about(const Eigen::Vector3d& centre, const Vector6& motion
   return result;
 }
 
+// Of at least one value.
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
 }  // namespace
 
 double size_of(PointView points) {
@@ -142,11 +149,8 @@ std::vector<FreeDirection> free_directions(const PreparedCloud& moved, const Pre
   const auto is_unevenness = [&](const Vector6& motion, double seen) {
     if (seen * size > unevenness * v) return false;
     const SmallMotion whole{at_pose.centre, motion.head<3>(), size * motion.tail<3>()};
-    std::vector<double> shifts =
-        shifts_along_normals(moved_surface, fixed_surface, fixed_from_moved, search_radius * v, max_points, whole);
-    const auto median = shifts.begin() + static_cast<std::ptrdiff_t>(shifts.size() / 2);
-    std::ranges::nth_element(shifts, median);
-    return median != shifts.end() && *median > alike * seen * size;
+    return median_of(shifts_along_normals(moved_surface, fixed_surface, fixed_from_moved, search_radius * v, max_points,
+                                          whole)) > alike * seen * size;
   };
   std::vector<FreeDirection> found;
   for (int i = 0; i < 6 && solver.eigenvalues()[i] < well_fixed * well_fixed; ++i) {

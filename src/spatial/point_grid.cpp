@@ -80,15 +80,18 @@ std::int64_t PointGrid::nearest_within(const Eigen::Vector3f& centre, float radi
   float best = radius * radius;
   std::int64_t nearest = -1;
   visit_runs(centre, radius, best, [&](std::uint32_t begin, std::uint32_t end) {
+    // Most runs have nothing nearer, which several points at a time tell.
     float least = std::numeric_limits<float>::infinity();
 #pragma omp simd reduction(min : least)
     for (std::uint32_t i = begin; i < end; ++i) least = std::min(least, squared_distance(i, centre));
     if (!(least <= best)) return;
-    if (least < best) nearest = -1;
-    best = least;
-    // Ties go to the lower original index, so that the answer does not depend on the cells.
     for (std::uint32_t i = begin; i < end; ++i) {
-      if (squared_distance(i, centre) == best && (nearest < 0 || index[i] < nearest)) nearest = index[i];
+      const float squared = squared_distance(i, centre);
+      // Ties go to the lower original index, so that the answer does not depend on the cells.
+      if (squared < best || (squared == best && (nearest < 0 || index[i] < nearest))) {
+        best = squared;
+        nearest = index[i];
+      }
     }
   });
   return nearest;
