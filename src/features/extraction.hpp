@@ -9,15 +9,16 @@ namespace igsp {
 /// Throws InvalidArgument.
 void require_finite(const std::optional<Eigen::Vector3d>& viewpoint);
 
-enum class Description { now, later };
+/// When normals, keypoints and what belongs to them are made.
+enum class Keypoints { now, later };
 
-/// extract_features for a cloud whose stray points are known already, and with a finite viewpoint. Normals, keypoints and
-/// all that belongs to them may be left out until they are needed.
+/// extract_features for a cloud whose stray points are known already, and with a finite viewpoint. What is left for
+/// later is made by `complete`.
 Features extract_features(const TrimmedCloud& cloud, const std::optional<Eigen::Vector3d>& viewpoint,
                           const Options& options, const ProgressCallback& progress,
-                          Description description = Description::now);
+                          Keypoints keypoints = Keypoints::now);
 
-/// What was left out, if it was.
+/// Makes what was left for later, if it was.
 void complete(const Options& options, StageClock& clock, Features& features);
 
 /// The same cloud at voxels twice as large, from its finer ones.

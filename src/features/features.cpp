@@ -79,7 +79,7 @@ Features extract_features(const Scan& scan, const Options& options, const Progre
 }
 
 Features extract_features(const TrimmedCloud& trimmed, const std::optional<Eigen::Vector3d>& viewpoint,
-                          const Options& options, const ProgressCallback& progress, Description description) {
+                          const Options& options, const ProgressCallback& progress, Keypoints keypoints) {
   const Bounds& bounds = trimmed.bounds();
   if (const double unit = unit_of_length(bounds, bounds, options.scale.voxel_size); unit != 1) {
     return extract_in_unit(unit, trimmed, viewpoint, options, progress);
@@ -103,7 +103,7 @@ Features extract_features(const TrimmedCloud& trimmed, const std::optional<Eigen
   features.fine_points = voxel_centroids(cloud, bounds.min, fine_voxels * features.voxel_size);
   for (Eigen::Vector3d& point : features.fine_points) point -= to_centre;
 
-  if (description == Description::now) complete(options, clock, features);
+  if (keypoints == Keypoints::now) complete(options, clock, features);
   clock.finish();
   features.timings_s = clock.timings();
   return features;

@@ -15,7 +15,7 @@ namespace igsp {
 struct ConsistencyOptions {
   double length_tolerance = 0;  ///< of | |a - a'| - |b - b'| | [units of the cloud]
   double min_length = 0;        ///< shorter pairs say nothing [units of the cloud]
-  double max_angle_rad = 0;     ///< between the rotations of the two pairs of frames, and three quarters of it of the turned difference
+  double max_angle_rad = 0;  ///< between the rotations of the two pairs of frames; three quarters: where they turn to
 };
 
 /// Symmetric relation over candidates, one bitset a row.

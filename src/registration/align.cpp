@@ -93,7 +93,7 @@ using CompleteBoth = std::function<void(StageClock&)>;
 SearchOutcome search(FinerScale& finer, CoarserScale& coarser, const std::optional<Transformation>& initial,
                      const Options& options, StageClock& clock) {
   if (initial) return refine_initial(finer, *initial, options, clock);
-  if (options.search == Search::direct) return direct_search(finer.frame(clock), options, clock);
+  if (options.search == Search::direct) return direct_search(finer.frame(), options, clock);
   return hypotheses_search(finer, coarser, options, clock);
 }
 
@@ -109,19 +109,19 @@ Result align_features(const Features& source, const Features& target, const Comp
   result.target = summary_of(target);
 
   clock.start("common frame");
-  FinerScale finer(source, target, complete_both, options);
+  FinerScale finer(source, target, complete_both, options, clock);
   CoarserScale coarser(source, target, options, clock);
   std::optional<Transformation> local_initial;
   if (initial) local_initial = to_local(*initial, source, target);
   const SearchOutcome outcome = search(finer, coarser, local_initial, options, clock);
-  const CommonFrame& scale = outcome.settled_coarse ? coarser.frame() : finer.frame(clock);
+  const CommonFrame& scale = outcome.settled_coarse ? coarser.frame() : finer.frame();
   result.loop_voxel_size = scale.target().features.voxel_size;
   result.source_keypoints = keypoints_in_world(scale.source().features);
   result.target_keypoints = keypoints_in_world(scale.target().features);
   result.source.keypoints = result.source_keypoints.size();
   result.target.keypoints = result.target_keypoints.size();
   clock.start("verdict");
-  judge(finer, coarser, outcome, clock, result);
+  judge(finer, coarser, outcome, result);
   clock.finish();
 
   result.target_from_source = to_world(outcome.target_from_source, source, target);
@@ -153,8 +153,8 @@ Result align_points(const TrimmedScan& source, const TrimmedScan& target, const 
   Options scaled = options;
   scaled.scale.voxel_size = choose_voxel_size(source.cloud, target.cloud, options.scale);
   clock.finish();
-  Features source_features = extract_features(source.cloud, source.viewpoint, scaled, progress, Description::later);
-  Features target_features = extract_features(target.cloud, target.viewpoint, scaled, progress, Description::later);
+  Features source_features = extract_features(source.cloud, source.viewpoint, scaled, progress, Keypoints::later);
+  Features target_features = extract_features(target.cloud, target.viewpoint, scaled, progress, Keypoints::later);
   const CompleteBoth complete_both = [&](StageClock& at) {
     complete(scaled, at, source_features);
     complete(scaled, at, target_features);

@@ -12,13 +12,13 @@ namespace igsp {
 /// pairs that overlap. Refers to the features.
 class FinerScale {
  public:
-  /// `complete` fills what Description::later left out of both, as stages of the clock.
+  /// `complete` fills what extract_features was told to leave out of both, as stages of the clock.
   FinerScale(const Features& source, const Features& target, std::function<void(StageClock&)> complete,
-             const Options& options);
+             const Options& options, StageClock& clock);
 
   const Features& source() const { return source_; }  ///< complete only after frame()
   const Features& target() const { return target_; }
-  CommonFrame& frame(StageClock& clock);
+  CommonFrame& frame();
 
  private:
   struct Clouds {
@@ -30,6 +30,7 @@ class FinerScale {
   const Features& target_;
   std::function<void(StageClock&)> complete_;
   const Options& options_;
+  StageClock& clock_;
   std::optional<Clouds> clouds_;
 };
 

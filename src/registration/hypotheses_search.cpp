@@ -202,7 +202,7 @@ SearchOutcome hypotheses_search(FinerScale& finer, CoarserScale& coarser, const 
       return finished(std::move(found), coarser.frame(), finer, options, clock);
     }
   }
-  CommonFrame& frame = finer.frame(clock);
+  CommonFrame& frame = finer.frame();
   return finished(search_at(frame, found, options, clock), frame, finer, options, clock);
 }
 
@@ -211,7 +211,7 @@ SearchOutcome refine_initial(FinerScale& finer, const Transformation& initial, c
   SearchOutcome outcome;
   outcome.has_estimate = true;
   outcome.target_from_source = initial;
-  finish(finer.frame(clock), finer, options, clock, outcome);
+  finish(finer.frame(), finer, options, clock, outcome);
   return outcome;
 }
 

@@ -28,8 +28,9 @@ constexpr double similar_contact = 0.95;     // ... so a pose that is a little o
 constexpr double search_radius = 1.5;        // voxels
 // A turn by one radian, or a shift by the size of the cloud, that a surface allows moves its places by the unevenness
 // of the voxels, all of them alike: by 0.15 to 1.3 voxels (RMS) on sparse cylinders and corridors, the median being 0.3
-// of that and more. Poses that are fixed: 1.75 voxels and more, or, three boxes on a field, a median below 0.06.
-constexpr double unevenness = 1.5;  // voxels
+// of that and more. Poses that are fixed: 1.5 voxels and more (objects of 1,200 points from 1.1 on), or, three boxes on
+// a field, a median below 0.06.
+constexpr double unevenness = 1.3;  // voxels
 constexpr double alike = 0.15;
 constexpr std::size_t max_points = 1500;
 
@@ -68,6 +69,13 @@ Transformation motion_about(const Eigen::Vector3d& centre, const Vector6& motion
     result.linear() = Eigen::AngleAxisd(rotation.norm(), rotation.normalized()).toRotationMatrix();
   result.translation() = centre + motion.tail<3>() - result.linear() * centre;
   return result;
+}
+
+// Of at least one value.
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
 }
 
 }  // namespace
@@ -141,11 +149,8 @@ std::vector<FreeDirection> free_directions(const PreparedCloud& moved, const Pre
   const auto is_unevenness = [&](const Vector6& motion, double seen) {
     if (seen * size > unevenness * v) return false;
     const SmallMotion whole{at_pose.centre, motion.head<3>(), size * motion.tail<3>()};
-    std::vector<double> shifts =
-        shifts_along_normals(moved_surface, fixed_surface, fixed_from_moved, search_radius * v, max_points, whole);
-    const auto median = shifts.begin() + static_cast<std::ptrdiff_t>(shifts.size() / 2);
-    std::ranges::nth_element(shifts, median);
-    return median != shifts.end() && *median > alike * seen * size;
+    return median_of(shifts_along_normals(moved_surface, fixed_surface, fixed_from_moved, search_radius * v, max_points,
+                                          whole)) > alike * seen * size;
   };
   std::vector<FreeDirection> found;
   for (int i = 0; i < 6 && solver.eigenvalues()[i] < well_fixed * well_fixed; ++i) {

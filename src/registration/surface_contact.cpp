@@ -45,15 +45,15 @@ SurfaceContact surface_contact(const PreparedCloud& moved, const PreparedCloud& 
   double touching_weight = 0, weight_sum = 0;
   std::size_t met = 0, covered = 0;
   const auto normal_of = [&](std::size_t j) -> const Eigen::Vector3d& { return fixed.features.normals[j]; };
-  const std::size_t places = visit_places(moved.features.points, fixed.features.points, fixed.grid, v, fixed_from_moved,
-                                          normal_of, [&](std::size_t i, double normal) {
-                                            ++met;
-                                            const double weight =
-                                                0.002 + std::min<double>(moved.features.curvature[i], 0.05);
-                                            weight_sum += weight;
-                                            if (normal < touching * v) touching_weight += weight;
-                                            covered += normal < on_surface * v;
-                                          });
+  const auto count = [&](std::size_t i, double normal) {
+    ++met;
+    const double weight = 0.002 + std::min<double>(moved.features.curvature[i], 0.05);
+    weight_sum += weight;
+    if (normal < touching * v) touching_weight += weight;
+    covered += normal < on_surface * v;
+  };
+  const std::size_t places =
+      visit_places(moved.features.points, fixed.features.points, fixed.grid, v, fixed_from_moved, normal_of, count);
   SurfaceContact contact;
   // Two pseudo-observations of each kind: few places prove little.
   const double n = static_cast<double>(met);

@@ -132,7 +132,8 @@ std::optional<RunnerUp> runner_up_of(const Judgement& judgement) {
   return RunnerUp{judgement.rivals.front().target_from_source, std::min(1.0, explained / all)};
 }
 
-// Always at the finer scale, so that it means the same whichever scale the verdict was asked at.
+// Always at the finer scale, so that it means the same whichever scale the verdict was asked at; with normals of its
+// own, of the places that are met, since most pairs come here before that scale is made ready.
 void tell_overlap(const FinerScale& finer, const Transformation& target_from_source, Result& result) {
   const Features &source = finer.source(), &target = finer.target();
   const double v = target.voxel_size, normal_radius = result.options.keypoints.pca_radius * v;
@@ -150,20 +151,20 @@ std::string why_refused(const Judgement& judgement) {
 
 }  // namespace
 
-void judge(FinerScale& finer, CoarserScale& coarser, const SearchOutcome& outcome, StageClock& clock, Result& result) {
+void judge(FinerScale& finer, CoarserScale& coarser, const SearchOutcome& outcome, Result& result) {
   result.termination = outcome.termination;
   result.has_estimate = outcome.has_estimate;
   if (!outcome.has_estimate) {
     result.reason = why_no_estimate(result);
-    name_what_the_target_leaves_free(finer.frame(clock), result);
+    name_what_the_target_leaves_free(finer.frame(), result);
     return;
   }
-  CommonFrame& first = outcome.settled_coarse ? coarser.frame() : finer.frame(clock);
+  CommonFrame& first = outcome.settled_coarse ? coarser.frame() : finer.frame();
   const std::vector<Rival> rivals = true_rivals(outcome, first.target().features.voxel_size);
   Judgement judgement = judgement_of(first, outcome.target_from_source, rivals);
   result.evidence.voxel_size = first.target().features.voxel_size;
   if (judgement.confidence < 0.5 && coarser.is_there()) {
-    CommonFrame& second = outcome.settled_coarse ? finer.frame(clock) : coarser.frame();
+    CommonFrame& second = outcome.settled_coarse ? finer.frame() : coarser.frame();
     Judgement other = judgement_of(second, outcome.target_from_source, assessed_at(second, rivals));
     if (other.confidence > judgement.confidence) {
       judgement = std::move(other);
@@ -198,7 +199,7 @@ void judge(FinerScale& finer, CoarserScale& coarser, const SearchOutcome& outcom
   }
   if (!result.registered && !is_free && !other_scale) {
     result.reason += why_refused(judgement);
-    name_what_the_target_leaves_free(finer.frame(clock), result);
+    name_what_the_target_leaves_free(finer.frame(), result);
   }
 }
 

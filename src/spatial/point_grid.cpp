@@ -79,27 +79,21 @@ float PointGrid::squared_distance(std::uint32_t i, const Eigen::Vector3f& centre
 std::int64_t PointGrid::nearest_within(const Eigen::Vector3f& centre, float radius) const {
   float best = radius * radius;
   std::int64_t nearest = -1;
-  const auto lo = cell_of(centre - Eigen::Vector3f::Constant(radius));
-  const auto hi = cell_of(centre + Eigen::Vector3f::Constant(radius));
-  for (int cz = lo[2]; cz <= hi[2]; ++cz) {
-    const float dz = distance_to_cell(centre.z() - origin.z(), cz);
-    for (int cy = lo[1]; cy <= hi[1]; ++cy) {
-      const float dy = distance_to_cell(centre.y() - origin.y(), cy);
-      if (dz * dz + dy * dy > best) continue;
-      const std::uint32_t begin = start[cell_number(lo[0], cy, cz)];
-      const std::uint32_t end = start[cell_number(hi[0], cy, cz) + 1];
-      float least = std::numeric_limits<float>::infinity();
+  visit_runs(centre, radius, best, [&](std::uint32_t begin, std::uint32_t end) {
+    // Most runs have nothing nearer, which several points at a time tell.
+    float least = std::numeric_limits<float>::infinity();
 #pragma omp simd reduction(min : least)
-      for (std::uint32_t i = begin; i < end; ++i) least = std::min(least, squared_distance(i, centre));
-      if (!(least <= best)) continue;
-      if (least < best) nearest = -1;
-      best = least;
+    for (std::uint32_t i = begin; i < end; ++i) least = std::min(least, squared_distance(i, centre));
+    if (!(least <= best)) return;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const float squared = squared_distance(i, centre);
       // Ties go to the lower original index, so that the answer does not depend on the cells.
-      for (std::uint32_t i = begin; i < end; ++i) {
-        if (squared_distance(i, centre) == best && (nearest < 0 || index[i] < nearest)) nearest = index[i];
+      if (squared < best || (squared == best && (nearest < 0 || index[i] < nearest))) {
+        best = squared;
+        nearest = index[i];
       }
     }
-  }
+  });
   return nearest;
 }
 

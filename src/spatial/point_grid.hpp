@@ -25,13 +25,20 @@ class PointGrid {
   /// visit(begin, end) for every run of sorted points that may lie in the box centre +- radius.
   template <typename Visit>
   void visit_runs(const Eigen::Vector3f& centre, float radius, const Visit& visit) const {
+    const float limit = radius * radius;
+    visit_runs(centre, radius, limit, visit);
+  }
+
+  /// The same, but for runs whose squared distance is above the limit, which `visit` may lower.
+  template <typename Visit>
+  void visit_runs(const Eigen::Vector3f& centre, float radius, const float& squared_limit, const Visit& visit) const {
     const auto lo = cell_of(centre - Eigen::Vector3f::Constant(radius));
     const auto hi = cell_of(centre + Eigen::Vector3f::Constant(radius));
     for (int cz = lo[2]; cz <= hi[2]; ++cz) {
       const float dz = distance_to_cell(centre.z() - origin.z(), cz);
       for (int cy = lo[1]; cy <= hi[1]; ++cy) {
         const float dy = distance_to_cell(centre.y() - origin.y(), cy);
-        if (dz * dz + dy * dy > radius * radius) continue;
+        if (dz * dz + dy * dy > squared_limit) continue;
         const std::uint32_t begin = start[cell_number(lo[0], cy, cz)];
         const std::uint32_t end = start[cell_number(hi[0], cy, cz) + 1];
         if (begin != end) visit(begin, end);
