@@ -84,6 +84,14 @@ TEST_P(FreeDirections, Corridor) {
   expect_named(result, {translation_along(scene.target_from_world.linear() * Vector3d::UnitX())});
 }
 
+TEST_P(FreeDirections, OfTheExchangedCorridorInTheOtherFrame) {
+  const Scene scene = make_scene("corridor", GetParam());
+  const Result result = align(scene.pair.target, scene.pair.source);
+  const Eigen::Matrix3d source_from_world =
+      scene.pair.truth.linear().transpose() * scene.target_from_world.linear();
+  expect_named(result, {translation_along(source_from_world * Vector3d::UnitX())});
+}
+
 TEST_P(FreeDirections, Sphere) {
   const Scene scene = make_scene("sphere", GetParam());
   const Result result = align(scene.pair.source, scene.pair.target);

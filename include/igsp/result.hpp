@@ -30,7 +30,7 @@ struct IterationRecord {
   std::size_t matches = 0;          ///< |M|
   double energy = 0.0;              ///< Eq. 1 [bits]
   double rotation_step_rad = 0.0;
-  double translation_step = 0.0;  ///< displacement of the source keypoints' centroid [units of the cloud]
+  double translation_step = 0.0;  ///< displacement of the centroid of one cloud's keypoints [units of the cloud]
   double seconds = 0.0;
   Transformation target_from_source = Transformation::Identity();  ///< after this iteration
   std::vector<KeypointMatch> correspondences;                      ///< M, `matches` of them
@@ -97,7 +97,7 @@ struct Evidence {
   double rival_odds = 0.0;           ///< odds of the other poses that were looked into, against this one
   FreeSpace free_space;
   double voxel_size =
-      0.0;  ///< at which the questions were asked [units of the cloud]: Result::voxel_size or twice that
+      0.0;  ///< at which the questions were asked [units of the cloud]: Result::voxel_size times 1, 2, 4 or 8
 };
 
 /// The best other pose that was looked into.
@@ -122,8 +122,8 @@ struct Result {
   Precision precision;
   double rmse = 0.0;        ///< inlier RMSE: distances along the normals where the surfaces meet [units of the cloud]
   double voxel_size = 0.0;  ///< [units of the cloud]
-  /// At which `source_keypoints`, `target_keypoints` and `iterations` were made [units of the cloud]: voxel_size or
-  /// twice that.
+  /// At which `source_keypoints`, `target_keypoints` and `iterations` were made [units of the cloud]: voxel_size times
+  /// 1, 2, 4 or 8.
   double loop_voxel_size = 0.0;
   CloudSummary source;
   CloudSummary target;

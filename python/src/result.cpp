@@ -84,7 +84,7 @@ void bind_evidence(nb::module_& module) {
       .def_ro("quality", &Evidence::quality, "What both say as log10 odds that the pose is right.")
       .def_ro("rival_odds", &Evidence::rival_odds, "Odds of the other poses that were looked into, against this one.")
       .def_ro("voxel_size", &Evidence::voxel_size,
-              "At which the questions were asked [units of the cloud]: Result.voxel_size or twice that.");
+              "At which the questions were asked [units of the cloud]: Result.voxel_size times 1, 2, 4 or 8.");
   portable_class<RunnerUp>(module, "RunnerUp", "The best other pose that was looked into.")
       .def_prop_ro("target_from_source", &matrix<RunnerUp, &RunnerUp::target_from_source>, nb::rv_policy::automatic,
                    "(4, 4) float64.")
@@ -146,7 +146,7 @@ void bind_result(nb::module_& module) {
               "Inlier RMSE: distances along the normals where the surfaces meet [units of the cloud].")
       .def_ro("voxel_size", &Result::voxel_size, "[units of the cloud].")
       .def_ro("loop_voxel_size", &Result::loop_voxel_size,
-              "At which keypoints and iterations were made [units of the cloud]: voxel_size or twice that.")
+              "At which keypoints and iterations were made [units of the cloud]: voxel_size times 1, 2, 4 or 8.")
       .def_ro("source", &Result::source, "Sizes of the source.")
       .def_ro("target", &Result::target, "Sizes of the target.")
       .def_prop_ro("source_keypoints", &view_of_member<Result, &Result::source_keypoints>,

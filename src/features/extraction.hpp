@@ -21,8 +21,8 @@ Features extract_features(const TrimmedCloud& cloud, const std::optional<Eigen::
 /// Makes what was left for later, if it was.
 void complete(const Options& options, StageClock& clock, Features& features);
 
-/// The same cloud at voxels twice as large, from its finer ones.
-Features coarser_features(const Features& finer, const Options& options, const ProgressCallback& progress);
+/// The same cloud at voxels twice as large, from its finer ones, normals and keypoints being left for later.
+Features coarser_voxels(const Features& finer);
 
 /// What a plane mirror at the local origin shows, x being negated: the same keypoints, described anew.
 Features mirrored_features(const Features& features, const Options& options);

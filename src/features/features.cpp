@@ -130,8 +130,7 @@ Features mirrored_features(const Features& features, const Options& options) {
   return image;
 }
 
-Features coarser_features(const Features& finer, const Options& options, const ProgressCallback& progress) {
-  StageClock clock(progress);
+Features coarser_voxels(const Features& finer) {
   Features features;
   features.origin = finer.origin;
   features.viewpoint = finer.viewpoint;
@@ -141,8 +140,6 @@ Features coarser_features(const Features& finer, const Options& options, const P
   features.fine_points = finer.points;
   features.cloud_points = finer.cloud_points;
   features.stray = finer.stray;
-  complete(options, clock, features);
-  clock.finish();
   return features;
 }
 

@@ -8,7 +8,8 @@
 #include <optional>
 
 #include "features/extraction.hpp"
-#include "registration/pose_assessment.hpp"
+#include "registration/exchange.hpp"
+#include "registration/reason.hpp"
 #include "registration/scale_lengths.hpp"
 #include "registration/search.hpp"
 #include "registration/verdict.hpp"
@@ -90,17 +91,16 @@ Result without_extent(const TrimmedCloud& source, const TrimmedCloud& target, co
 // Fills what the features of both may lack, where that is needed.
 using CompleteBoth = std::function<void(StageClock&)>;
 
-SearchOutcome search(FinerScale& finer, CoarserScale& coarser, const std::optional<Transformation>& initial,
+SearchOutcome search(ScaleLadder& scales, const std::optional<Transformation>& initial,
                      const Options& options, StageClock& clock) {
-  if (initial) return refine_initial(finer, *initial, options, clock);
-  if (options.search == Search::direct) return direct_search(finer.frame(), options, clock);
-  return hypotheses_search(finer, coarser, options, clock);
+  if (initial) return refine_initial(scales, *initial, options, clock);
+  if (options.search == Search::direct) return direct_search(scales.frame(0), options, clock);
+  return hypotheses_search(scales, options, clock);
 }
 
-Result align_features(const Features& source, const Features& target, const CompleteBoth& complete_both,
-                      const Transformation* initial, const Options& options, const ProgressCallback& progress) {
-  validate(options);
-  check_compatible(source, target);
+Result align_in_order(const Features& source, const Features& target, bool is_exchanged,
+                      const CompleteBoth& complete_both, const Transformation* initial, const Options& options,
+                      const ProgressCallback& progress) {
   StageClock clock(progress);
   Result result;
   result.options = options;
@@ -109,21 +109,18 @@ Result align_features(const Features& source, const Features& target, const Comp
   result.target = summary_of(target);
 
   clock.start("common frame");
-  FinerScale finer(source, target, complete_both, options, clock);
-  CoarserScale coarser(source, target, options, clock);
+  ScaleLadder scales(source, target, complete_both, options, clock);
   std::optional<Transformation> local_initial;
   if (initial) local_initial = to_local(*initial, source, target);
-  const SearchOutcome outcome = search(finer, coarser, local_initial, options, clock);
-  const CommonFrame& scale = outcome.settled_coarse ? coarser.frame() : finer.frame();
+  const SearchOutcome outcome = search(scales, local_initial, options, clock);
+  const CommonFrame& scale = scales.frame(outcome.rung);
   result.loop_voxel_size = scale.target().features.voxel_size;
   result.source_keypoints = keypoints_in_world(scale.source().features);
   result.target_keypoints = keypoints_in_world(scale.target().features);
   result.source.keypoints = result.source_keypoints.size();
   result.target.keypoints = result.target_keypoints.size();
   clock.start("verdict");
-  judge(finer, coarser, outcome, result);
-  clock.finish();
-
+  const Doubts doubts = judge(scales, outcome, result);
   result.target_from_source = to_world(outcome.target_from_source, source, target);
   result.precision.centre += target.origin;
   if (result.runner_up) {
@@ -133,9 +130,37 @@ Result align_features(const Features& source, const Features& target, const Comp
   for (IterationRecord& record : result.iterations) {
     record.target_from_source = to_world(record.target_from_source, source, target);
   }
+  if (is_exchanged) exchange_clouds(result);
+  const CommonFrame& frame = scales.frame(outcome.finest_rung);
+  give_reason(is_exchanged ? frame.source() : frame.target(), doubts, result);
+  clock.finish();
   result.timings_s = sum_of(source.timings_s, target.timings_s);
   result.timings_s.insert(result.timings_s.end(), clock.timings().begin(), clock.timings().end());
   return result;
+}
+
+// The verdict must not depend on which cloud is called the source, and all of the search does: descriptors of a common
+// frame stand in the target's axes. So the larger cloud is the target inside, whatever the caller calls it. The counts
+// that decide do not change when a cloud is moved; where they are alike the coordinates decide.
+bool is_in_order(const Features& source, const Features& target) {
+  if (source.cloud_points != target.cloud_points) return source.cloud_points < target.cloud_points;
+  if (source.points.size() != target.points.size()) return source.points.size() < target.points.size();
+  const auto before = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  };
+  return !std::ranges::lexicographical_compare(target.points, source.points, before);
+}
+
+Result align_features(const Features& source, const Features& target, const CompleteBoth& complete_both,
+                      const Transformation* initial, const Options& options, const ProgressCallback& progress) {
+  validate(options);
+  check_compatible(source, target);
+  if (is_in_order(source, target)) {
+    return align_in_order(source, target, false, complete_both, initial, options, progress);
+  }
+  std::optional<Transformation> inverse;
+  if (initial) inverse = initial->inverse();
+  return align_in_order(target, source, true, complete_both, inverse ? &*inverse : nullptr, options, progress);
 }
 
 // A scan without its stray points.

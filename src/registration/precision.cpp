@@ -46,21 +46,6 @@ constexpr std::size_t max_scale_points = 2000;
 constexpr double largest_scale_error = 0.035;  // of the logarithm of the factor
 constexpr double certain_sigmas = 10;          // residuals are correlated, so their sigma is too small
 
-std::string describe(const Vector6& motion) {
-  const Eigen::Vector3d rotation = motion.head<3>(), translation = motion.tail<3>();
-  const auto axis = [](Eigen::Vector3d a) {
-    a.normalize();
-    Eigen::Index largest;
-    a.cwiseAbs().maxCoeff(&largest);
-    if (a[largest] < 0) a = -a;
-    return fmt::format("({:.2f}, {:.2f}, {:.2f})", a.x(), a.y(), a.z());
-  };
-  if (rotation.norm() < 0.3) return "translation along " + axis(translation);
-  // Translation across the axis only moves the axis; translation along it makes a screw.
-  const double along = std::abs(rotation.normalized().dot(translation));
-  return (along < 0.3 ? "rotation about " : "screw motion about ") + axis(rotation);
-}
-
 // `motion`: rotation scaled by `size`, translation.
 Transformation motion_about(const Eigen::Vector3d& centre, const Vector6& motion, double size) {
   const Eigen::Vector3d rotation = motion.head<3>() / size;
@@ -79,6 +64,21 @@ double median_of(std::vector<double> values) {
 }
 
 }  // namespace
+
+std::string describe_motion(const Vector6& motion) {
+  const Eigen::Vector3d rotation = motion.head<3>(), translation = motion.tail<3>();
+  const auto axis = [](Eigen::Vector3d a) {
+    a.normalize();
+    Eigen::Index largest;
+    a.cwiseAbs().maxCoeff(&largest);
+    if (a[largest] < 0) a = -a;
+    return fmt::format("({:.2f}, {:.2f}, {:.2f})", a.x(), a.y(), a.z());
+  };
+  if (rotation.norm() < 0.3) return "translation along " + axis(translation);
+  // Translation across the axis only moves the axis; translation along it makes a screw.
+  const double along = std::abs(rotation.normalized().dot(translation));
+  return (along < 0.3 ? "rotation about " : "screw motion about ") + axis(rotation);
+}
 
 double size_of(PointView points) {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -159,7 +159,7 @@ std::vector<FreeDirection> free_directions(const PreparedCloud& moved, const Pre
     const double share = seen < hardly_seen ? similar_contact : unchanged_contact;
     if (is_unevenness(motion, seen) ||
         (still_touches(trial_motion * v * motion, share) && still_touches(-trial_motion * v * motion, share))) {
-      found.push_back({motion, describe(motion)});
+      found.push_back({motion, describe_motion(motion)});
     }
   }
   return found;

@@ -25,6 +25,9 @@ Precision precision_at(FineSurfaces& surfaces, const Transformation& target_from
 /// such a cloud where it belongs.
 bool is_of_another_scale(const Precision& precision);
 
+/// Such as "translation along (1.00, 0.00, 0.00)"; rotations scaled by the size of the scene.
+std::string describe_motion(const Eigen::Matrix<double, 6, 1>& motion);
+
 /// Motions of 8 voxels after which the surfaces touch as much as before: what the surfaces do not fix. Candidates are
 /// the weakest eigenvectors of the normal equations at the pose. Called with one cloud twice and the identity, these
 /// are the motions that slide it along itself. In the coordinates of `fixed`.

@@ -1,13 +1,19 @@
 #pragma once
 
 #include "igsp/result.hpp"
-#include "registration/coarser_scale.hpp"
 #include "registration/search.hpp"
 
 namespace igsp {
 
-/// Fills the verdict, its reason, overlap and RMSE of `result` from the pose that a search found. Where the scale that
-/// settled the search does not carry it, the other one is asked as well: sparse surfaces close at the coarser.
-void judge(FinerScale& finer, CoarserScale& coarser, const SearchOutcome& outcome, Result& result);
+/// What speaks against a pose besides the numbers of the result.
+struct Doubts {
+  bool is_ambiguous = false;         ///< more by other poses than by chance
+  bool is_of_another_scale = false;  ///< no rigid motion puts such a source where it belongs
+};
+
+/// Fills the verdict, overlap and RMSE of `result` from the pose that a search found; the reason is left to
+/// `give_reason`. Where the scale that answered does not carry it, the others are asked as well: sparse surfaces close
+/// at the coarser ones.
+Doubts judge(ScaleLadder& scales, const SearchOutcome& outcome, Result& result);
 
 }  // namespace igsp

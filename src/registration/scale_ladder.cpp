@@ -1,0 +1,61 @@
+#include "registration/scale_ladder.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "features/extraction.hpp"
+
+namespace igsp {
+namespace {
+
+constexpr int stages = 4;                // keypoints and descriptors of both
+constexpr std::size_t most_rungs = 4;
+constexpr std::size_t min_voxels = 1200;  // on the rung below: a quarter of them is left
+
+}  // namespace
+
+ScaleLadder::Clouds::Clouds(const Features& source_features, const Features& target_features, const Options& options)
+    : source(source_features),
+      target(target_features),
+      frame(source, target, options.descriptor.radius * target_features.voxel_size, options.threads) {}
+
+ScaleLadder::ScaleLadder(const Features& source, const Features& target, std::function<void(StageClock&)> complete,
+                         const Options& options, StageClock& clock)
+    : complete_(std::move(complete)), options_(options), clock_(clock) {
+  rungs_.push_back({source, target, {}});
+  while (rungs_.size() < most_rungs) {
+    const Rung& below = rungs_.back();
+    if (std::min(below.source.points.size(), below.target.points.size()) < min_voxels) break;
+    const Coarser& pair = coarser_.emplace_back(coarser_voxels(below.source), coarser_voxels(below.target));
+    rungs_.push_back({pair.source, pair.target, {}});
+  }
+}
+
+void ScaleLadder::complete_coarser(Coarser& pair) {
+  std::string stage;
+  int begun = 0;
+  const ProgressCallback report = [&](const Progress& progress) {
+    if (progress.stage != stage) ++begun, stage = progress.stage;
+    clock_.report((begun - 1 + progress.fraction) / stages);
+    return true;
+  };
+  StageClock own(report);
+  complete(options_, own, pair.source);
+  complete(options_, own, pair.target);
+  own.finish();
+}
+
+CommonFrame& ScaleLadder::frame(std::size_t rung) {
+  auto& [source, target, clouds] = rungs_[rung];
+  if (!clouds) {
+    if (rung == 0) {
+      complete_(clock_);
+    } else {
+      complete_coarser(coarser_[rung - 1]);
+    }
+    clouds.emplace(source, target, options_);
+  }
+  return clouds->frame;
+}
+
+}  // namespace igsp

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <optional>
+
+#include "core/stage_clock.hpp"
+#include "registration/common_frame.hpp"
+
+namespace igsp {
+
+/// Both clouds at the voxels that were chosen, rung 0, and at voxels twice as large on every further rung: sparse
+/// surfaces close there, and searching costs a quarter. Each is made ready where it is first asked for: most pairs that
+/// overlap are settled above rung 0. Refers to the features.
+class ScaleLadder {
+ public:
+  /// `complete` fills what extract_features was told to leave out of both, as stages of the clock. What the other rungs
+  /// take is reported as progress of the clock's stage.
+  ScaleLadder(const Features& source, const Features& target, std::function<void(StageClock&)> complete,
+              const Options& options, StageClock& clock);
+
+  std::size_t rungs() const { return rungs_.size(); }  ///< at least one; none where too few voxels would be left
+  double voxel_size(std::size_t rung) const { return rungs_[rung].target.voxel_size; }
+  CommonFrame& frame(std::size_t rung);
+
+  const Features& source() const { return rungs_[0].source; }  ///< of rung 0; complete only after frame(0)
+  const Features& target() const { return rungs_[0].target; }
+
+ private:
+  struct Coarser {
+    Features source, target;
+  };
+  struct Clouds {
+    Clouds(const Features& source_features, const Features& target_features, const Options& options);
+    PreparedCloud source, target;
+    CommonFrame frame;
+  };
+  struct Rung {
+    const Features& source;
+    const Features& target;
+    std::optional<Clouds> clouds;
+  };
+
+  void complete_coarser(Coarser& pair);
+
+  std::function<void(StageClock&)> complete_;
+  const Options& options_;
+  StageClock& clock_;
+  std::deque<Coarser> coarser_;  // from rung 1 on
+  std::deque<Rung> rungs_;
+};
+
+}  // namespace igsp
