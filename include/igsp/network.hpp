@@ -56,6 +56,10 @@ struct NetworkOptions {
   /// line (of levelled scans two).
   std::vector<ControlPose> control;
 
+  /// Of how many scans features are kept in memory, besides those that are just worked on. 0: of all. Otherwise a source
+  /// of features is asked for a scan again when it is needed again. The answer does not depend on it.
+  std::size_t features_in_memory = 0;
+
   PairRule pairs = PairRule::all;
   std::vector<ScanPair> listed_pairs;  ///< in any order, either scan first
 };
@@ -124,8 +128,8 @@ struct Network {
   std::vector<std::string> warnings;  ///< what of the options could not be followed, a sentence each
 };
 
-/// Hands out the features of scan i; called from the thread that called the library. What it throws (except Cancelled)
-/// becomes that scan's problem and does not stop the others.
+/// Hands out the features of scan i; called from the thread that called the library. What it throws the first time
+/// (except Cancelled) becomes that scan's problem and does not stop the others; later it ends the run.
 using FeatureSource = std::function<Features(std::size_t scan)>;
 
 /// Keeps what a run has finished, so that a later one goes on from there. `find` and `keep` may be called from several

@@ -17,6 +17,7 @@ constexpr double normal_radius = 1.5;
 constexpr double search_radius = 1.0;
 constexpr double first_radius = 1.5;  // the pose graph may have moved a scan further than a pair's last step would
 constexpr std::size_t max_points = 8000;
+constexpr std::size_t surfaces_at_once = 8;  // while they are made, their features are in memory
 
 constexpr int max_steps = 10;
 constexpr double small_step = 1e-4;  // [voxels, rad]
@@ -52,13 +53,13 @@ class SharedSurface {
 
 class Bundle {
  public:
-  Bundle(Network& network, std::span<const Features* const> features, const NetworkOptions& options,
-         const std::vector<bool>& under_control)
-      : network_(network), features_(features), options_(options), threads_(options.pair.threads) {
+  Bundle(Network& network, FeatureShelf& features, std::span<const Eigen::Vector3d> stations,
+         const NetworkOptions& options, const std::vector<bool>& under_control)
+      : network_(network), stations_(stations), options_(options), threads_(options.pair.threads) {
     const std::size_t scans = network.scans.size();
     poses_.resize(scans, Transformation::Identity());
     is_free_.resize(scans, false);
-    surfaces_.resize(scans);
+    take_surfaces(features);
     for (const NetworkLink& link : network.links) {
       if (link.state == LinkState::used || link.state == LinkState::unconfirmed) links_.push_back(&link);
     }
@@ -67,19 +68,12 @@ class Bundle {
       const std::size_t anchor = anchor_of(component, options.fixed_scan);
       for (const std::size_t i : component) {
         is_free_[i] = component.size() > 1 && (i != anchor || under_control[c]);
-        poses_[i] = local_pose(i);
+        if (surfaces_[i]) poses_[i] = local_pose(i);
       }
     }
     for (const ControlPose& one : options.control) {
       if (under_control[network.scans[one.scan].component]) control_.push_back(&one);
     }
-    parallel_blocks(scans, threads_, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        if (network.components[network.scans[i].component].size() > 1) {
-          surfaces_[i] = std::make_unique<SharedSurface>(*features_[i]);
-        }
-      }
-    });
     centres_.resize(scans, Eigen::Vector3d::Zero());
     for (std::size_t i = 0; i < scans; ++i) {
       if (surfaces_[i]) centres_[i] = surfaces_[i]->centre();
@@ -96,10 +90,32 @@ class Bundle {
   }
 
  private:
+  // Of the scans that lie in a frame with others, several at a time.
+  void take_surfaces(FeatureShelf& features) {
+    surfaces_.resize(network_.scans.size());
+    origins_.resize(network_.scans.size(), Eigen::Vector3d::Zero());
+    std::vector<std::pair<std::size_t, std::shared_ptr<const Features>>> some;
+    const auto make = [&] {
+      parallel_blocks(some.size(), threads_, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+          surfaces_[some[k].first] = std::make_unique<SharedSurface>(*some[k].second);
+        }
+      });
+      some.clear();
+    };
+    for (std::size_t i = 0; i < network_.scans.size(); ++i) {
+      if (network_.components[network_.scans[i].component].size() == 1) continue;
+      some.emplace_back(i, features.get(i));
+      origins_[i] = some.back().second->origin;
+      if (some.size() == surfaces_at_once) make();
+    }
+    make();
+  }
+
   // From the scan's centred frame in voxels to the world in voxels.
   Transformation local_pose(std::size_t i) const {
     Transformation pose = network_.scans[i].world_from_scan;
-    pose.translation() = pose * features_[i]->origin / network_.voxel_size;
+    pose.translation() = pose * origins_[i] / network_.voxel_size;
     return pose;
   }
 
@@ -132,8 +148,7 @@ class Bundle {
     ControlPose control = given;
     control.position /= network_.voxel_size;
     control.position_sigma /= network_.voxel_size;
-    const Features& features = *features_[control.scan];
-    const Eigen::Vector3d station = (station_of(features) - features.origin) / network_.voxel_size;
+    const Eigen::Vector3d station = (stations_[control.scan] - origins_[control.scan]) / network_.voxel_size;
     return prior_of(control, poses_[control.scan], station, centres_[control.scan]);
   }
 
@@ -143,7 +158,7 @@ class Bundle {
       if (!is_free_[i]) continue;
       NetworkScan& scan = network_.scans[i];
       scan.world_from_scan.linear() = poses_[i].linear();
-      scan.world_from_scan.translation() = v * poses_[i].translation() - poses_[i].linear() * features_[i]->origin;
+      scan.world_from_scan.translation() = v * poses_[i].translation() - poses_[i].linear() * origins_[i];
       scan.centre = v * (poses_[i] * centres_[i]);
       Matrix6 turn = Matrix6::Zero();
       turn.topLeftCorner<3, 3>() = poses_[i].linear();
@@ -153,7 +168,7 @@ class Bundle {
   }
 
   Network& network_;
-  std::span<const Features* const> features_;
+  std::span<const Eigen::Vector3d> stations_;
   const NetworkOptions& options_;
   int threads_;
   std::vector<const NetworkLink*> links_;
@@ -161,14 +176,14 @@ class Bundle {
   std::vector<Transformation> poses_;
   std::vector<bool> is_free_;
   std::vector<std::unique_ptr<SharedSurface>> surfaces_;
-  std::vector<Eigen::Vector3d> centres_;
+  std::vector<Eigen::Vector3d> centres_, origins_;
 };
 
 }  // namespace
 
-void refine_jointly(Network& network, std::span<const Features* const> features, const NetworkOptions& options,
-                    const std::vector<bool>& under_control) {
-  Bundle(network, features, options, under_control).run();
+void refine_jointly(Network& network, FeatureShelf& features, std::span<const Eigen::Vector3d> stations,
+                    const NetworkOptions& options, const std::vector<bool>& under_control) {
+  Bundle(network, features, stations, options, under_control).run();
 }
 
 }  // namespace igsp

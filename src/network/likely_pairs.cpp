@@ -1,6 +1,7 @@
 #include "network/likely_pairs.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <set>
 
@@ -31,11 +32,16 @@ ScanPair pair_of(std::size_t a, std::size_t b) {
 
 class PairSearch {
  public:
-  PairSearch(const Network& network, std::span<const Features* const> features, std::span<const ScanShape> shapes,
+  PairSearch(const Network& network, FeatureShelf& features, std::span<const ScanShape> shapes,
              const NetworkOptions& options)
       : start_(network), shapes_(shapes), options_(options), n_(network.scans.size()) {
-    likeness_ = likeness_of_scans(features, options.pair.degrees_of_freedom, options.pair.threads);
-    for (const Features* scan : features) spaces_.emplace_back(*scan);
+    std::vector<std::vector<Descriptor>> voters;
+    for (std::size_t i = 0; i < n_; ++i) {
+      const auto scan = network.scans[i].problem.empty() ? features.get(i) : std::make_shared<const Features>();
+      voters.push_back(voters_of(*scan));
+      spaces_.emplace_back(*scan);
+    }
+    likeness_ = likeness_of_scans(voters, options.pair.degrees_of_freedom, options.pair.threads);
   }
 
   /// Those to be tried next, given the links so far. Empty: there are none.
@@ -118,7 +124,7 @@ class PairSearch {
 
 }  // namespace
 
-std::vector<NetworkLink> register_likely_pairs(const Network& network, std::span<const Features* const> features,
+std::vector<NetworkLink> register_likely_pairs(const Network& network, FeatureShelf& features,
                                                std::span<const ScanShape> shapes, const NetworkOptions& options,
                                                const PairStore& store, const std::function<void(double)>& report) {
   PairSearch search(network, features, shapes, options);

@@ -14,7 +14,7 @@ struct Sites {
   std::vector<SimulatedScan> scans =
       simulate("park", {.stations = 3, .points = 20000, .station_distance = 8, .seed = 3});
   std::vector<Features> features;
-  std::vector<const Features*> views;
+  std::vector<std::vector<Descriptor>> voters;
 
   Sites() {
     for (const SimulatedScan& scan : simulate("park", {.stations = 2, .points = 20000, .seed = 11}))
@@ -22,13 +22,13 @@ struct Sites {
     Options options;
     options.scale.voxel_size = 0.6;
     for (const SimulatedScan& scan : scans) features.push_back(extract_features(scan, options));
-    for (const Features& one : features) views.push_back(&one);
+    for (const Features& one : features) voters.push_back(voters_of(one));
   }
 };
 
 TEST(Likeness, IsHighestWithinASiteWhateverTheThreads) {
   const Sites sites;
-  const std::vector<double> likeness = likeness_of_scans(sites.views, 6, 1);
+  const std::vector<double> likeness = likeness_of_scans(sites.voters, 6, 1);
   const auto of = [&](std::size_t i, std::size_t j) { return likeness[5 * i + j]; };
   for (const std::size_t i : {0, 1, 2}) {
     for (const std::size_t j : {0, 1, 2}) {
@@ -41,14 +41,13 @@ TEST(Likeness, IsHighestWithinASiteWhateverTheThreads) {
     EXPECT_GT(of(3, 4), i < 3 ? of(3, i) : 0);
     for (std::size_t j = 0; j < 5; ++j) EXPECT_EQ(of(i, j), of(j, i));
   }
-  EXPECT_EQ(likeness_of_scans(sites.views, 6, 3), likeness);
+  EXPECT_EQ(likeness_of_scans(sites.voters, 6, 3), likeness);
 }
 
 TEST(Likeness, OfScansWithoutKeypointsIsNone) {
   const Sites sites;
-  const Features nothing;
-  const std::vector<const Features*> views = {&sites.features[0], &nothing, &sites.features[1]};
-  const std::vector<double> likeness = likeness_of_scans(views, 4, 1);
+  const std::vector<std::vector<Descriptor>> voters = {sites.voters[0], voters_of({}), sites.voters[1]};
+  const std::vector<double> likeness = likeness_of_scans(voters, 4, 1);
   EXPECT_EQ(likeness[1], 0);
   EXPECT_EQ(likeness[5], 0);
 }

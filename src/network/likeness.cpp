@@ -13,14 +13,11 @@ namespace {
 // The most curved of a scan: 100 rank pairs as well as 400 do (docs/network.md).
 constexpr std::size_t keypoints_that_vote = 128;
 
-std::span<const Descriptor> voters(const Features& scan) {
-  return std::span(scan.descriptors).first(std::min(keypoints_that_vote, scan.descriptors.size()));
-}
-
 // The least distance of every voter of a scan to those of another.
-std::vector<double> nearest(std::span<const Descriptor> variants, std::size_t flips, const Features& other) {
+std::vector<double> nearest(std::span<const Descriptor> variants, std::size_t flips,
+                            const std::vector<Descriptor>& other) {
   std::vector<double> distances(variants.size() / flips, 0);
-  feature_distance_rows(variants, flips, voters(other), 1, [&](std::size_t voter, std::span<const std::uint16_t> row) {
+  feature_distance_rows(variants, flips, other, 1, [&](std::size_t voter, std::span<const std::uint16_t> row) {
     distances[voter] = *std::ranges::min_element(row);
   });
   return distances;
@@ -28,14 +25,14 @@ std::vector<double> nearest(std::span<const Descriptor> variants, std::size_t fl
 
 // How far a keypoint's nearest neighbour in one scan stands out among those in all others, squared and in sigmas, as
 // the mean over the keypoints: a place that is seen again is far nearer than places that are only of the same kind.
-std::vector<double> votes_of(std::size_t i, std::span<const Features* const> scans, std::size_t flips) {
+std::vector<double> votes_of(std::size_t i, std::span<const std::vector<Descriptor>> scans, std::size_t flips) {
   std::vector<double> votes(scans.size(), 0);
-  const std::vector<Descriptor> variants = sign_variants(voters(*scans[i]), static_cast<int>(flips));
+  const std::vector<Descriptor> variants = sign_variants(scans[i], static_cast<int>(flips));
   std::vector<std::vector<double>> distances(scans.size());
   std::size_t others = 0;
   for (std::size_t j = 0; j < scans.size(); ++j) {
-    if (j == i || scans[j]->descriptors.empty()) continue;
-    distances[j] = nearest(variants, flips, *scans[j]);
+    if (j == i || scans[j].empty()) continue;
+    distances[j] = nearest(variants, flips, scans[j]);
     ++others;
   }
   const std::size_t count = variants.size() / flips;
@@ -59,7 +56,13 @@ std::vector<double> votes_of(std::size_t i, std::span<const Features* const> sca
 
 }  // namespace
 
-std::vector<double> likeness_of_scans(std::span<const Features* const> scans, int degrees_of_freedom, int threads) {
+std::vector<Descriptor> voters_of(const Features& scan) {
+  const std::size_t count = std::min(keypoints_that_vote, scan.descriptors.size());
+  return {scan.descriptors.begin(), scan.descriptors.begin() + count};
+}
+
+std::vector<double> likeness_of_scans(std::span<const std::vector<Descriptor>> scans, int degrees_of_freedom,
+                                      int threads) {
   const std::size_t n = scans.size();
   const std::size_t flips = degrees_of_freedom == 4 ? 2 : 4;
   std::vector<std::vector<double>> votes(n);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
+#include <optional>
 #include <set>
 
 #include "core/parallel.hpp"
@@ -12,7 +14,7 @@
 namespace igsp {
 namespace {
 
-constexpr std::size_t slice = 8;  // pairs between two reports
+constexpr std::size_t slice = 8;  // pairs at once, between two reports
 
 // Of the direction that is seen less of.
 std::size_t in_view(const FreeSpace& space) {
@@ -37,16 +39,11 @@ NetworkLink link_of(const ScanPair& pair, const Result& result) {
   return link;
 }
 
-Result result_of(const ScanPair& pair, std::span<const Features* const> features, const Options& options,
-                 const PairStore& store) {
-  const auto [source, target] = pair;
-  if (store.find) {
-    if (std::optional<Result> found = store.find(source, target)) return std::move(*found);
-  }
-  Result result = align(*features[source], *features[target], options);
-  if (store.keep) store.keep(source, target, result);
-  return result;
-}
+// A pair that nobody has registered yet, with what it takes.
+struct OpenPair {
+  std::size_t number;  // among those that were asked for
+  std::shared_ptr<const Features> source, target;
+};
 
 }  // namespace
 
@@ -72,21 +69,35 @@ std::vector<ScanPair> listed_pairs(const std::vector<NetworkScan>& scans, std::s
   return {pairs.begin(), pairs.end()};
 }
 
-std::vector<NetworkLink> register_pairs(std::span<const ScanPair> pairs, std::span<const Features* const> features,
-                                        const Options& options, const PairStore& store,
-                                        const std::function<void(double)>& report) {
+std::vector<NetworkLink> register_pairs(std::span<const ScanPair> pairs, FeatureShelf& features, const Options& options,
+                                        const PairStore& store, const std::function<void(double)>& report) {
   if (store.prepare) store.prepare(pairs, report);
   Options single = options;
   single.threads = 1;
   std::vector<NetworkLink> links(pairs.size());
-  parallel_slices(
-      pairs.size(), options.threads, 1, slice,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          links[i] = link_of(pairs[i], result_of(pairs[i], features, single, store));
-        }
-      },
-      report);
+  std::vector<OpenPair> open;
+  const auto register_open = [&] {
+    parallel_blocks(open.size(), options.threads, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const ScanPair& pair = pairs[open[i].number];
+        const Result result = align(*open[i].source, *open[i].target, single);
+        if (store.keep) store.keep(pair.first, pair.second, result);
+        links[open[i].number] = link_of(pair, result);
+      }
+    });
+    open.clear();
+  };
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto [source, target] = pairs[i];
+    if (open.empty()) report(static_cast<double>(i) / static_cast<double>(pairs.size()));
+    if (const std::optional<Result> found = store.find ? store.find(source, target) : std::nullopt) {
+      links[i] = link_of(pairs[i], *found);
+      continue;
+    }
+    open.push_back({i, features.get(source), features.get(target)});
+    if (open.size() == slice) register_open();
+  }
+  register_open();
   return links;
 }
 

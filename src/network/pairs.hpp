@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "igsp/network.hpp"
+#include "network/feature_shelf.hpp"
 
 namespace igsp {
 
@@ -15,11 +16,10 @@ std::vector<ScanPair> all_pairs(const std::vector<NetworkScan>& scans);
 /// not there or paired with itself.
 std::vector<ScanPair> listed_pairs(const std::vector<NetworkScan>& scans, std::span<const ScanPair> given);
 
-/// Registers pairs, several at a time, each on one thread. `features` by scan; only those of the pairs are looked at.
+/// Registers pairs, several at a time, each on one thread. Of the features those of a few pairs are held at once.
 /// The store is told of all of them first; what it has is taken from it, the rest is kept in it. `report` gets the
 /// share done and may throw to stop.
-std::vector<NetworkLink> register_pairs(std::span<const ScanPair> pairs, std::span<const Features* const> features,
-                                        const Options& options, const PairStore& store,
-                                        const std::function<void(double)>& report);
+std::vector<NetworkLink> register_pairs(std::span<const ScanPair> pairs, FeatureShelf& features, const Options& options,
+                                        const PairStore& store, const std::function<void(double)>& report);
 
 }  // namespace igsp

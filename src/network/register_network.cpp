@@ -7,6 +7,7 @@
 #include "network/common_scale.hpp"
 #include "network/control.hpp"
 #include "network/decide.hpp"
+#include "network/feature_shelf.hpp"
 #include "network/joint_refinement.hpp"
 #include "network/likely_pairs.hpp"
 #include "network/pairs.hpp"
@@ -25,14 +26,16 @@ void report(const ProgressCallback& progress, std::string_view stage, double fra
   if (progress && !progress({stage, fraction})) throw Cancelled();
 }
 
-// Features of all scans; what a source throws is that scan's problem.
+// What is known of every scan from its features.
 struct Gathered {
-  std::vector<Features> features;
+  explicit Gathered(std::size_t count) : scans(count), shapes(count), stations(count, Eigen::Vector3d::Zero()) {}
   std::vector<NetworkScan> scans;
+  std::vector<ScanShape> shapes;
+  std::vector<Eigen::Vector3d> stations;
   double voxel_size = 0;
 };
 
-void take(Gathered& gathered, Features features, std::size_t i) {
+void take(Gathered& gathered, const Features& features, std::size_t i) {
   if (features.points.empty()) throw InvalidArgument("no points");
   if (gathered.voxel_size == 0) gathered.voxel_size = features.voxel_size;
   if (features.voxel_size != gathered.voxel_size) {
@@ -40,15 +43,17 @@ void take(Gathered& gathered, Features features, std::size_t i) {
                                       features.voxel_size, gathered.voxel_size));
   }
   gathered.scans[i].points = features.cloud_points;
-  gathered.features[i] = std::move(features);
+  gathered.shapes[i] = shape_of(features);
+  gathered.stations[i] = station_of(features);
 }
 
-Gathered gather(std::size_t count, const FeatureSource& source, const ProgressCallback& progress) {
-  Gathered gathered{std::vector<Features>(count), std::vector<NetworkScan>(count)};
+// What a source throws is that scan's problem.
+Gathered gather(FeatureShelf& shelf, std::size_t count, const ProgressCallback& progress) {
+  Gathered gathered(count);
   for (std::size_t i = 0; i < count; ++i) {
     report(progress, "features", static_cast<double>(i) / static_cast<double>(count));
     try {
-      take(gathered, source(i), i);
+      take(gathered, *shelf.get(i), i);
     } catch (const Cancelled&) {
       throw;
     } catch (const std::exception& error) {
@@ -79,31 +84,25 @@ Network register_network(std::size_t scans, const FeatureSource& features, const
                          const ProgressCallback& progress, const PairStore& store) {
   check(options);
   check_control(options, scans);
-  Gathered gathered = gather(scans, features, progress);
+  FeatureShelf shelf(scans, features, options.features_in_memory);
+  Gathered gathered = gather(shelf, scans, progress);
+  const auto& [_, shapes, stations, voxel_size] = gathered;
   Network network;
   network.scans = std::move(gathered.scans);
-  network.voxel_size = gathered.voxel_size;
-  std::vector<const Features*> views;
-  std::vector<ScanShape> shapes;
-  std::vector<Eigen::Vector3d> stations;
-  for (const Features& one : gathered.features) {
-    views.push_back(&one);
-    shapes.push_back(shape_of(one));
-    stations.push_back(station_of(one));
-  }
+  network.voxel_size = voxel_size;
   const auto report_pairs = [&](double done) { report(progress, "pairs", done); };
   if (options.pairs == PairRule::automatic) {
-    network.links = register_likely_pairs(network, views, shapes, options, store, report_pairs);
+    network.links = register_likely_pairs(network, shelf, shapes, options, store, report_pairs);
   } else {
     const bool all = options.pairs == PairRule::all;
     network.links = register_pairs(all ? all_pairs(network.scans) : listed_pairs(network.scans, options.listed_pairs),
-                                   views, options.pair, store, report_pairs);
+                                   shelf, options.pair, store, report_pairs);
   }
   report(progress, "pairs", 1);
   decide(network, shapes, options);
   report(progress, "network", 0);
   const std::vector<bool> placed = move_to_control(network, stations, options);
-  if (options.pair.refinement.enabled) refine_jointly(network, views, options, placed);
+  if (options.pair.refinement.enabled) refine_jointly(network, shelf, stations, options, placed);
   measure_control(network, stations, options, placed);
   measure_residuals(network, shapes);
   report(progress, "network", 1);

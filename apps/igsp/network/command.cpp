@@ -26,6 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t held_scans = 64;  // the features of others are read from the cache when they are needed
+
 struct NetworkSettings {
   std::vector<fs::path> scans;
   fs::path folder, viewpoints, control;
@@ -154,10 +156,11 @@ int run_network(const NetworkSettings& settings) {
   NetworkStore store(settings.folder / "cache", reading, options.pair, *engine);
   choose_voxel_size(options.pair, store, *engine, reading, settings.quiet, progress);
   if (engine->works_ahead()) store.expect_features(progress);
+  options.features_in_memory = held_scans;
   std::vector<DrawnScan> drawn(reading.files.size());
   const auto features = [&](std::size_t i) {
     Features one = store.features(i, progress);
-    drawn[i] = drawn_scan(one, drawn.size());
+    if (drawn[i].points.empty()) drawn[i] = drawn_scan(one, drawn.size());
     return one;
   };
   Network network = register_network(reading.files.size(), features, options, progress, store.pairs());
