@@ -16,7 +16,8 @@ matplotlib.rcParams.update({"svg.hashsalt": "igsp", "svg.fonttype": "none", "fon
 import matplotlib.pyplot as plt
 import numpy as np
 
-NUMBERS = ("overlap", "confidence", "quality", "contact_share", "rival_odds", "runner_up_share")
+NUMBERS = ("source_points", "target_points", "overlap", "confidence", "quality", "contact_share", "rival_odds",
+           "runner_up_share")
 COUNTS = ("right", "has_estimate", "registered", "free_directions", "mutual_matches", "agreeing_matches")
 FREE_CONFIDENCE = 0.1  # the verdict's cap where a direction is free
 
@@ -72,6 +73,13 @@ def area_under_curve(quality, right):
     """Probability that a right answer has the higher Q (ties count half)."""
     good, bad = quality[right], quality[~right]
     return np.mean((good[:, None] > bad[None]) + 0.5 * (good[:, None] == bad[None]))
+
+
+def calibration_error(confidence, right, bins=10):
+    """Expected calibration error: |mean confidence - share right| of equal bins of confidence, weighted by count."""
+    places = np.minimum((confidence * bins).astype(int), bins - 1)
+    gaps = [abs(np.sum(confidence[places == b]) - np.sum(right[places == b])) for b in range(bins)]
+    return np.sum(gaps) / len(confidence)
 
 
 def wilson(successes, count, z=1.96):
@@ -178,6 +186,20 @@ def report_overlap(rows):
               f"{np.sum(right & ~registered):4d} {np.sum(registered & ~right):4d}")
 
 
+def report_calibration_error(rows):
+    print("\nunambiguous answers: count, mean confidence, share right, expected calibration error (10 bins), Brier score")
+    points = np.minimum(column(rows, "source_points"), column(rows, "target_points"))
+    scene = np.array([row["source_scene"] for row in rows])
+    groups = {"all": points > 0, **{name: scene == name for name in sorted(set(scene))},
+              "registered": column(rows, "registered") > 0, "refused": column(rows, "registered") == 0,
+              "below 5,000 points": points < 5000, "5,000 to 50,000": (points >= 5000) & (points < 50000),
+              "50,000 and more": points >= 50000}
+    for name, chosen in groups.items():
+        confidence, right = column(rows, "confidence")[chosen], column(rows, "right")[chosen]
+        print(f"  {name:20s} {len(right):4d}  {confidence.mean():.3f}  {right.mean():.3f}  "
+              f"{calibration_error(confidence, right):.3f}  {np.mean((confidence - right) ** 2):.3f}")
+
+
 def report_worst(rows):
     wrong = sorted((row for row in rows if not row["right"]), key=lambda row: -row["quality"])
     print("\nwrong answers with the largest Q, not ambiguous:")
@@ -213,6 +235,7 @@ def main():
     print("fitted without indoor scenes: even_quality {:.3f}, steepness {:.2f}".format(*fit(outside)))
     report_scenes(answers)
     report_overlap([row for row in answers if row["kind"] == "ordinary"])
+    report_calibration_error(clear)
     report_worst(hard)
 
     arguments.images.mkdir(parents=True, exist_ok=True)
