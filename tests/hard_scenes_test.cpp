@@ -54,6 +54,19 @@ TEST(HardScenes, RepetitiveCorridorIsNeverWrong) {
   }
 }
 
+// Floor and walls lie right in a mirror, and where nothing is contradicted the known viewpoints speak for the pose.
+TEST(HardScenes, MirroredSourceIsRefused) {
+  for (const char* scene : {"park", "indoor"}) {
+    for (const std::uint64_t seed : {1, 2, 6, 7}) {
+      SCOPED_TRACE(::testing::Message() << scene << " " << seed);
+      Pair pair = testing::simulated_pair(scene, 60000, 0, seed);
+      for (Eigen::Vector3d& point : pair.source) point.y() *= -1;
+      const Result result = align(Scan{pair.source, Eigen::Vector3d::Zero()}, Scan{pair.target, Eigen::Vector3d::Zero()});
+      EXPECT_FALSE(result.registered) << result.confidence << ": " << result.reason;
+    }
+  }
+}
+
 void expect_refusal(const Points& source, const Points& target) {
   const Result result = align(source, target);
   EXPECT_FALSE(result.registered) << result.confidence << ": " << result.reason;

@@ -37,23 +37,23 @@ Stages stages_of(const std::vector<Report>& reports) {
 
 const Stages features_of_both = {"scale", "voxel grid", "common frame"};
 
-Stages after_features(const Stages& last) {
+Stages after_features(const std::vector<Stages>& parts) {
   Stages stages = features_of_both;
-  stages.insert(stages.end(), last.begin(), last.end());
+  for (const Stages& part : parts) stages.insert(stages.end(), part.begin(), part.end());
   return stages;
 }
 
 TEST(ProgressOfAlign, NamesEveryStage) {
   const Pair pair = testing::simulated_pair("park", points);
   const Pair hopeless{pair.source, testing::simulated_pair("park", points, 0, 8).target, pair.truth};
-  EXPECT_EQ(stages_of(reports_of(pair)),
-            after_features({"hypotheses", "screening", "ranking", "loop", "refinement", "verdict"}));
-  EXPECT_EQ(stages_of(reports_of(hopeless)),
-            after_features({"hypotheses", "screening", "ranking", "keypoints", "descriptors", "keypoints",
-                            "descriptors", "hypotheses", "screening", "ranking", "loop", "refinement", "verdict"}))
-      << "the coarser scale does not settle this pair";
+  const Stages coarser = {"coarser scale", "hypotheses", "screening", "ranking"};
+  const Stages finest = {"keypoints", "descriptors", "keypoints", "descriptors", "hypotheses", "screening", "ranking"};
+  const Stages end = {"loop", "refinement", "verdict"};
+  EXPECT_EQ(stages_of(reports_of(pair)), after_features({coarser, coarser, end}));
+  EXPECT_EQ(stages_of(reports_of(hopeless)), after_features({coarser, coarser, coarser, finest, end}))
+      << "no scale settles this pair";
   EXPECT_EQ(stages_of(reports_of(pair, &pair.truth)),
-            after_features({"keypoints", "descriptors", "keypoints", "descriptors", "loop", "refinement", "verdict"}));
+            after_features({{"keypoints", "descriptors", "keypoints", "descriptors"}, end}));
 }
 
 TEST(ProgressOfAlign, EveryStageRunsFromZeroToOne) {
@@ -79,7 +79,7 @@ TEST(ProgressOfAlign, ReportsOften) {
     SCOPED_TRACE(scene);
     const std::vector<Report> reports = reports_of(testing::simulated_pair(scene, points));
     EXPECT_GE(reports.size(), 50u);
-    for (const char* stage : {"common frame", "screening", "loop"}) {
+    for (const char* stage : {"coarser scale", "screening", "loop"}) {
       const auto inside = [&](const Report& r) { return r.stage == stage && r.fraction > 0.0 && r.fraction < 1.0; };
       EXPECT_GE(std::count_if(reports.begin(), reports.end(), inside), 1) << stage;
     }
@@ -99,7 +99,7 @@ TEST(ProgressOfAlign, StopsInEveryStage) {
     EXPECT_THROW(align(pair.source, pair.target, {}, [&](const Progress&) { return ++calls < last; }), Cancelled);
     EXPECT_EQ(calls, last) << "work went on in " << report.stage << " after the callback said stop";
   }
-  EXPECT_EQ(stopped_in.size(), 9u);
+  EXPECT_EQ(stopped_in.size(), 10u);
 }
 
 }  // namespace

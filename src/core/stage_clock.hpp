@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <utility>
@@ -28,14 +29,20 @@ class StageClock {
     if (progress_ && !progress_({stage_, fraction})) throw Cancelled();
   }
   void finish() { stop(); }
-  const StageTimings& timings() const { return timings_; }
+  const StageTimings& timings() const { return timings_; }  ///< by stage, in the order of their first start
 
  private:
   using Clock = std::chrono::steady_clock;
   void stop() {
     if (stage_.empty()) return;
     report(1.0);
-    timings_.emplace_back(stage_, std::chrono::duration<double>(Clock::now() - begin_).count());
+    const double seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
+    const auto same = std::ranges::find(timings_, stage_, &StageTimings::value_type::first);
+    if (same == timings_.end()) {
+      timings_.emplace_back(stage_, seconds);
+    } else {
+      same->second += seconds;
+    }
     stage_.clear();
   }
 

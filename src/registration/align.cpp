@@ -98,6 +98,41 @@ SearchOutcome search(ScaleLadder& scales, const std::optional<Transformation>& i
   return hypotheses_search(scales, options, clock);
 }
 
+// How confident a search for the mirrored source would be. It has no right pose, so this is what wrong poses of this
+// very pair can reach; unless it is the source that is mirrored.
+double confidence_of_mirror_image(const Features& source, const Features& target, const CompleteBoth& complete_both,
+                                  const Options& options, StageClock& clock) {
+  clock.start("mirror image");
+  Features image = mirrored_features(source, options);
+  const CompleteBoth complete_image = [&](StageClock& at) {
+    complete_both(at);
+    complete(options, at, image);
+  };
+  const ProgressCallback keep_asking = [&](const Progress& progress) {
+    clock.report(progress.fraction < 1 ? 0.0 : 0.5);
+    return true;
+  };
+  StageClock own(keep_asking);
+  ScaleLadder scales(image, target, complete_image, options, own);
+  const SearchOutcome outcome = hypotheses_search(scales, options, own);
+  Result result;
+  result.options = options;
+  judge(scales, outcome, result);
+  return result.confidence;
+}
+
+// Where the answer is not beyond doubt, the mirror image has to do worse.
+void compare_with_mirror_image(const Features& source, const Features& target, const CompleteBoth& complete_both,
+                               const Options& options, StageClock& clock, Doubts& doubts, Result& result) {
+  constexpr double beyond_doubt = 0.9;  // mirrored real scans reach 0.86
+  if (!result.registered || result.confidence >= beyond_doubt) return;
+  const double of_image = confidence_of_mirror_image(source, target, complete_both, options, clock);
+  if (of_image <= result.confidence) return;
+  doubts.mirror_image_fits = true;
+  result.confidence /= result.confidence + of_image;
+  result.registered = false;
+}
+
 Result align_in_order(const Features& source, const Features& target, bool is_exchanged,
                       const CompleteBoth& complete_both, const Transformation* initial, const Options& options,
                       const ProgressCallback& progress) {
@@ -120,7 +155,10 @@ Result align_in_order(const Features& source, const Features& target, bool is_ex
   result.source.keypoints = result.source_keypoints.size();
   result.target.keypoints = result.target_keypoints.size();
   clock.start("verdict");
-  const Doubts doubts = judge(scales, outcome, result);
+  Doubts doubts = judge(scales, outcome, result);
+  if (!initial && options.search == Search::hypotheses) {
+    compare_with_mirror_image(source, target, complete_both, options, clock, doubts, result);
+  }
   result.target_from_source = to_world(outcome.target_from_source, source, target);
   result.precision.centre += target.origin;
   if (result.runner_up) {
@@ -140,11 +178,10 @@ Result align_in_order(const Features& source, const Features& target, bool is_ex
 }
 
 // The verdict must not depend on which cloud is called the source, and all of the search does: descriptors of a common
-// frame stand in the target's axes. So the larger cloud is the target inside, whatever the caller calls it. The counts
-// that decide do not change when a cloud is moved; where they are alike the coordinates decide.
+// frame stand in the target's axes. So the cloud of more voxels moves inside, whatever the caller calls it; of as many,
+// the one whose coordinates come last.
 bool is_in_order(const Features& source, const Features& target) {
-  if (source.cloud_points != target.cloud_points) return source.cloud_points < target.cloud_points;
-  if (source.points.size() != target.points.size()) return source.points.size() < target.points.size();
+  if (source.points.size() != target.points.size()) return source.points.size() > target.points.size();
   const auto before = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
   };

@@ -23,7 +23,9 @@ constexpr int first_iterations = 3;
 constexpr int last_iterations = 20;
 
 constexpr std::array<double, 6> coarse_radii{3, 3, 2, 2, 1.5, 1.5};
-constexpr std::array<double, 5> fine_radii{3, 2, 1.5, 1.5, 1};
+// The first ones only after an answer at 8 v or 4 v, which may be that far off.
+constexpr std::array<double, 9> fine_radii{12, 8, 6, 4, 3, 2, 1.5, 1.5, 1};
+constexpr std::array<std::size_t, 4> first_fine_radius{4, 4, 2, 0};  // by rung
 constexpr std::size_t coarse_points = 1500;
 constexpr std::size_t early_fine_points = 2000;
 constexpr std::size_t fine_points = 8000;
@@ -117,18 +119,21 @@ void refine(const ScaleLadder& scales, const Options& options, StageClock& clock
   clock.start("refinement");
   FineSurfaces surfaces(scales.source(), scales.target());
   if (options.refinement.enabled) {
-    outcome.target_from_source = refine_point_to_plane(surfaces.source, surfaces.target, outcome.target_from_source,
-                                                       {early_fine_points, fine_points, fine_radii, max_last_steps,
-                                                        scales.voxel_size(0), options.degrees_of_freedom});
+    const auto radii = std::span(fine_radii).subspan(first_fine_radius[outcome.rung]);
+    outcome.target_from_source =
+        refine_point_to_plane(surfaces.source, surfaces.target, outcome.target_from_source,
+                              {early_fine_points, fine_points, radii, max_last_steps, scales.voxel_size(0),
+                               options.degrees_of_freedom});
   }
   outcome.precision = precision_at(surfaces, outcome.target_from_source, options.degrees_of_freedom);
 }
 
 // The loop at the scale that was searched, the refinement at the finest one.
 void finish(ScaleLadder& scales, const Options& options, StageClock& clock, SearchOutcome& outcome) {
+  CommonFrame& frame = scales.frame(outcome.rung);
   clock.start("loop");
   const int iterations = std::min(last_iterations, options.convergence.max_iterations);
-  LoopOutcome loop = hybrid_loop(scales.frame(outcome.rung), outcome.target_from_source, iterations, options,
+  LoopOutcome loop = hybrid_loop(frame, outcome.target_from_source, iterations, options,
                                  [&](int iteration) { clock.report(static_cast<double>(iteration) / iterations); });
   outcome.termination = loop.termination;
   outcome.iterations = std::move(loop.iterations);
@@ -183,13 +188,12 @@ std::vector<Rival> search_at(CommonFrame& scale, std::span<const Rival> found, c
   return rank(scale, candidates, options, clock);
 }
 
-// What the other rungs say against the best pose of this one.
+// What the finer rungs say against the best pose of this one: they see what it cannot, not the other way round.
 double contradiction_of(const SearchOutcome& outcome, std::size_t rung, const ScaleLadder& scales) {
   double most = 0;
-  for (std::size_t other = 0; other < outcome.ranked.size(); ++other) {
-    if (other == rung || outcome.ranked[other].empty()) continue;
-    const double v = scales.voxel_size(std::max(rung, other));
-    most = std::max(most, contradiction_by(outcome.ranked[other], outcome.ranked[rung].front(), v));
+  for (std::size_t finer = outcome.finest_rung; finer < rung; ++finer) {
+    if (outcome.ranked[finer].empty()) continue;
+    most = std::max(most, contradiction_by(outcome.ranked[finer], outcome.ranked[rung].front(), scales.voxel_size(rung)));
   }
   return most;
 }
@@ -215,9 +219,11 @@ void choose(const ScaleLadder& scales, const Options& options, SearchOutcome& ou
   }
 }
 
-// Enough for a pose to show at least a little of what it is worth.
-bool can_tell(CommonFrame& frame) {
-  return std::min(frame.source().features.points.size(), frame.target().features.points.size()) >= enough_voxels;
+// Whether voxels of 2 v show of every pose at least a little of what it is worth.
+bool can_tell(ScaleLadder& scales, std::size_t rung) {
+  const CommonFrame& frame = scales.frame(rung);
+  return rung == 1 &&
+         std::min(frame.source().features.points.size(), frame.target().features.points.size()) >= enough_voxels;
 }
 
 }  // namespace
@@ -233,7 +239,7 @@ SearchOutcome hypotheses_search(ScaleLadder& scales, const Options& options, Sta
     found = outcome.ranked[rung];
     if (!found.empty()) quality = std::max(quality, found.front().assessment.quality);
     outcome.finest_rung = rung;
-    const bool is_hopeless = can_tell(frame) && quality < hopeless_quality;
+    const bool is_hopeless = can_tell(scales, rung) && quality < hopeless_quality;
     if (is_hopeless || (options.refinement.enabled && is_settled(found, scales.voxel_size(rung)))) break;
   }
   choose(scales, options, outcome);

@@ -32,6 +32,7 @@ ScaleLadder::ScaleLadder(const Features& source, const Features& target, std::fu
 }
 
 void ScaleLadder::complete_coarser(Coarser& pair) {
+  clock_.start("coarser scale");
   std::string stage;
   int begun = 0;
   const ProgressCallback report = [&](const Progress& progress) {

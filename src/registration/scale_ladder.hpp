@@ -14,8 +14,8 @@ namespace igsp {
 /// overlap are settled above rung 0. Refers to the features.
 class ScaleLadder {
  public:
-  /// `complete` fills what extract_features was told to leave out of both, as stages of the clock. What the other rungs
-  /// take is reported as progress of the clock's stage.
+  /// `complete` fills what extract_features was told to leave out of both, as stages of the clock; what the other rungs
+  /// take is one more.
   ScaleLadder(const Features& source, const Features& target, std::function<void(StageClock&)> complete,
               const Options& options, StageClock& clock);
 

@@ -14,6 +14,10 @@ namespace {
 // Of a pose that may look right, where something else says that it is not known or not possible.
 constexpr double confidence_of_what_cannot_be = 0.1;
 
+// Of the overlap that a coarser rung sees, what the finest one sees at right poses of sparse scan lines is 0.3 and more,
+// where coordinates are rounded to steps of several voxels 0.18, at a pose that is only nearly right 0.12.
+constexpr double overlap_that_is_left = 0.25;
+
 // What one scale says of a pose.
 struct Judgement {
   PoseAssessment pose;
@@ -22,14 +26,13 @@ struct Judgement {
   double rival_odds = 0, confidence = 0;
 };
 
-// On voxels so large that a cloud is few of them across, nothing is fixed: those of the two finest rungs decide.
+// The larger the voxels, the fewer of them show what fixes a cloud: what is free must be so on the finest ones as well.
 std::vector<FreeDirection> free_directions_at(ScaleLadder& scales, std::size_t rung,
                                               const Transformation& target_from_source) {
-  constexpr std::size_t coarsest_that_tells = 1;
   const CommonFrame& frame = scales.frame(rung);
   std::vector<FreeDirection> free = free_directions(frame.source(), frame.target(), target_from_source);
-  if (free.empty() || rung <= coarsest_that_tells) return free;
-  return free_directions_at(scales, coarsest_that_tells, target_from_source);
+  if (free.empty() || rung == 0) return free;
+  return free_directions_at(scales, std::min<std::size_t>(rung - 1, 1), target_from_source);
 }
 
 // Other poses as a rung knows them: its own, refined there, or else those of the rung that answered.
@@ -106,9 +109,11 @@ Doubts judge(ScaleLadder& scales, const SearchOutcome& outcome, Result& result) 
   result.runner_up = runner_up_of(judgement);
   result.confidence = judgement.confidence;
   Doubts doubts;
+  doubts.is_coarse = result.confidence >= 0.5 &&
+                     std::sqrt(result.overlap_source * result.overlap_target) < overlap_that_is_left * pose.overlap();
   doubts.is_of_another_scale = result.confidence >= 0.5 && is_of_another_scale(result.precision);
   doubts.is_ambiguous = judgement.rival_odds > pose.chance_odds();
-  if (doubts.is_of_another_scale) result.confidence = std::min(result.confidence, confidence_of_what_cannot_be);
+  if (doubts.is_of_another_scale || doubts.is_coarse) result.confidence = std::min(result.confidence, confidence_of_what_cannot_be);
   result.registered = result.confidence >= 0.5;
   return doubts;
 }

@@ -8,6 +8,8 @@ namespace igsp {
 /// What speaks against a pose besides the numbers of the result.
 struct Doubts {
   bool is_ambiguous = false;         ///< more by other poses than by chance
+  bool is_coarse = false;            ///< large voxels carry it and fine ones do not: it is not as good as it must be
+  bool mirror_image_fits = false;    ///< better: the source is mirrored, or the scene is like its mirror image
   bool is_of_another_scale = false;  ///< no rigid motion puts such a source where it belongs
 };
 
