@@ -107,7 +107,7 @@ paper:
 # Every target for a minute. New inputs land in build/fuzz/inputs; a crash is written beside the Makefile and stops the
 # run.
 fuzz_seconds ?= 60
-fuzz_targets ?= ply pcd text transformation options table run assignment archive align
+fuzz_targets ?= ply pcd las text transformation options table run assignment archive align
 fuzz:
 	@scripts/setup.sh clang-14 libclang-rt-14-dev
 	cmake --preset asan
