@@ -4,7 +4,7 @@ jobs := $(shell nproc)
 igsp := build/release/bin/igsp
 demo := build/demo
 
-.PHONY: all build setup demo test deb docs wheel wheels bench bench-scrambles bench-peers calibrate paper asan tsan fuzz mutants tidy format install clean
+.PHONY: all build setup demo test deb container docs wheel wheels bench bench-scrambles bench-peers calibrate paper asan tsan fuzz mutants tidy format install clean
 
 all: build
 
@@ -107,7 +107,7 @@ paper:
 # Every target for a minute. New inputs land in build/fuzz/inputs; a crash is written beside the Makefile and stops the
 # run.
 fuzz_seconds ?= 60
-fuzz_targets ?= ply pcd text transformation options table run assignment archive align
+fuzz_targets ?= ply pcd las text transformation options table run assignment archive align
 fuzz:
 	@scripts/setup.sh clang-14 libclang-rt-14-dev
 	cmake --preset asan
@@ -143,6 +143,10 @@ deb: setup
 	cmake --preset release
 	cmake --build --preset release --target igsp_app
 	cpack --config build/release/CPackConfig.cmake -B build/deb
+
+# An image of the command on Debian slim.
+container: deb
+	docker build --tag igsp --file Containerfile build/deb
 
 # The documentation site, build/site/index.html, with its links checked.
 docs: setup

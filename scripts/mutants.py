@@ -1,11 +1,14 @@
 """Breaks the method's formulas one at a time and says which test notices.
 
 Works on a copy of the sources in the folder of --build; a mutant that no test notices is a survivor, and one whose text is not in
-the source any more is stale: both end with exit code 1. The list is scripts/mutant_list.py.
+the source any more is stale: both end with exit code 1. The list is scripts/mutant_list.py. The tests that lie beside the
+broken source are asked first, then the other unit tests, then the end-to-end tests. What each mutant was noticed by is kept
+in --record; --unrecorded leaves out what stands there.
 
-usage: mutants.py [--build build/mutants] [--only REGEX] [--jobs N] [--every N] [--quick] [--list]
+usage: mutants.py [--build build/mutants] [--only REGEX] [--jobs N] [--every N] [--quick] [--unrecorded] [--list]
 """
 import argparse
+import csv
 import re
 import resource
 import shutil
@@ -18,9 +21,11 @@ from pathlib import Path
 from mutant_list import MUTANTS
 
 ROOT = Path(__file__).resolve().parent.parent
+RECORD = ROOT / "docs/data/mutants.csv"
 # The quick one first, and how much processor time it may take, which a busy machine does not stretch: a loop that a
-# mistake makes endless is noticed, too.
+# mistake makes endless is noticed, too. The tests beside a source take ten seconds at most.
 PROGRAMS = {"igsp_tests": 300, "igsp_end_to_end_tests": 1800}
+SECONDS_BESIDE = 60
 
 
 def run(*command, **options):
@@ -35,6 +40,32 @@ def copy_sources(source):
             shutil.copy2(ROOT / name, source / name)
 
 
+def tests_beside(source):
+    """Names of the test suites in the folder of a source."""
+    texts = [path.read_text() for path in sorted(source.parent.glob("*_test.cpp"))]
+    return sorted({name for text in texts for name in re.findall(r"^(?:TEST\w*|RC_GTEST_PROP)\((\w+),", text, re.MULTILINE)})
+
+
+def filter_of(suites):
+    return ":".join(f"{suite}.*:*/{suite}.*" for suite in suites)
+
+
+def recorded():
+    """(file, mistake) to the test that noticed it."""
+    if not RECORD.exists():
+        return {}
+    with RECORD.open(newline="") as file:
+        return {(row["source"], row["mistake"]): row["noticed by"] for row in csv.DictReader(file)}
+
+
+def record(noticed):
+    """In the order of the list; what the list does not hold any more is dropped."""
+    with RECORD.open("w", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(["source", "mistake", "noticed by"])
+        rows.writerows([m[0], m[3], noticed[m[0], m[3]]] for m in MUTANTS if (m[0], m[3]) in noticed)
+
+
 class Workshop:
     def __init__(self, build, jobs, programs):
         # Laid out as the project itself, so that the compiler cache knows most of the objects.
@@ -47,16 +78,16 @@ class Workshop:
     def make(self, program):
         return run("cmake", "--build", self.build, "-j", self.jobs, "--target", program)
 
-    def noticed_by(self, program):
+    def noticed_by(self, program, tests="*", limit=None):
         """The first test that fails, or nothing."""
-        limit = PROGRAMS[program]
-        done = run(self.build / "bin" / program, "--gtest_fail_fast", "--gtest_brief=1",
+        limit = limit or PROGRAMS[program]
+        done = run(self.build / "bin" / program, "--gtest_fail_fast", "--gtest_brief=1", f"--gtest_filter={tests}",
                    preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 5)))
         if done.returncode == 0:
             return None
         if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
             return f"{program} does not end"
-        failed = re.search(r"\[  FAILED  \] ([\w/.]+)", done.stdout)
+        failed = re.search(r"\[  FAILED  \] (?:\w+/)?(\w+\.\w+)", done.stdout)
         return failed.group(1) if failed else f"{program} ends with {done.returncode}"
 
     def judge(self, mutant):
@@ -67,11 +98,16 @@ class Workshop:
             return f"STALE: stands there {text.count(original)} times"
         path.write_text(text.replace(original, mutated))
         try:
+            near = filter_of(tests_beside(path))
             for program in self.programs:
                 if self.make(program).returncode:
                     return "does not build"
-                if test := self.noticed_by(program):
-                    return test
+                rounds = [("*", None)]
+                if program == "igsp_tests" and near:
+                    rounds = [(near, SECONDS_BESIDE), (f"-{near}", None)]
+                for tests, limit in rounds:
+                    if test := self.noticed_by(program, tests, limit):
+                        return test
             return "SURVIVES"
         finally:
             path.write_text(text)
@@ -84,13 +120,18 @@ def main():
     parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--jobs", default="2")
     parser.add_argument("--quick", action="store_true", help="unit tests only: a survivor may be noticed by the others")
+    parser.add_argument("--unrecorded", action="store_true", help="those alone that the record does not hold")
     parser.add_argument("--list", action="store_true")
     arguments = parser.parse_args()
     chosen = [m for m in MUTANTS if re.search(arguments.only, f"{m[0]}: {m[3]}")][:: arguments.every]
+    if arguments.unrecorded:
+        chosen = [m for m in chosen if (m[0], m[3]) not in recorded()]
     if arguments.list:
+        noticed = recorded()
         for name, original, _, what in chosen:
             count = (ROOT / "src" / name).read_text().count(original)
-            print(f"{name:<40} {what}{'' if count == 1 else f'  STALE: stands there {count} times'}")
+            known = noticed.get((name, what), "not run yet") if count == 1 else f"STALE: stands there {count} times"
+            print(f"{name:<40} {what:<50} {known}")
         print(f"{len(chosen)} mutants")
         return any((ROOT / "src" / m[0]).read_text().count(m[1]) != 1 for m in chosen)
     workshop = Workshop(arguments.build, arguments.jobs, list(PROGRAMS)[:1] if arguments.quick else list(PROGRAMS))
@@ -104,7 +145,10 @@ def main():
     for mutant in chosen:
         start = time.monotonic()
         verdict = workshop.judge(mutant)
-        bad += verdict.startswith(("STALE", "SURVIVES"))
+        is_bad = verdict.startswith(("STALE", "SURVIVES", "does not build"))
+        bad += is_bad
+        record({**{key: test for key, test in recorded().items() if key != (mutant[0], mutant[3])},
+                **({} if is_bad else {(mutant[0], mutant[3]): verdict})})
         print(f"{mutant[0]:<40} {mutant[3]:<45} {verdict}  ({time.monotonic() - start:.0f} s)", flush=True)
     print(f"{len(chosen) - bad} of {len(chosen)} noticed")
     return bad > 0

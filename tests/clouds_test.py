@@ -125,7 +125,7 @@ class Transform(CloudTest):
     def test_mistakes(self):
         self.write_ply("a.ply", np.ones((3, 3)))
         self.save_motion(np.eye(4))
-        for output, code, saying in [("a.ply", 2, "same file"), ("no/b.ply", 3, "no/b.ply"), ("b.las", 3, "b.las"),
+        for output, code, saying in [("a.ply", 2, "same file"), ("no/b.ply", 3, "no/b.ply"), ("b.las", 2, "b.las"),
                                      ("b.unknown", 3, "unknown")]:
             done = self.igsp("transform", "a.ply", "--transform", "T.txt", "-o", output, code=code)
             self.assertIn(saying, done.stderr)

@@ -1,8 +1,9 @@
-"""Every test that docs/promises.md and SECURITY.md name exists, and every promise names one; every dependency that
-ARCHITECTURE.md names is on the page of licences.
+"""Every test that docs/promises.md, SECURITY.md and docs/data/mutants.csv name exists, and every promise names one; every
+dependency that ARCHITECTURE.md names is on the page of licences.
 
 usage: promises_test.py SOURCE_ROOT
 """
+import csv
 import re
 import sys
 from pathlib import Path
@@ -35,6 +36,14 @@ def faults_of(page, known):
             yield f"{page}:{number}: a promise without a test"
 
 
+def unknown_to_mutants(known):
+    with (ROOT / "docs/data/mutants.csv").open(newline="") as file:
+        for row in csv.DictReader(file):
+            test = row["noticed by"]
+            if " " not in test and tuple(test.split(".")) not in known:  # "igsp_tests does not end" names none
+                yield f"docs/data/mutants.csv: there is no test {test}"
+
+
 def without_licence():
     table = (ROOT / "ARCHITECTURE.md").read_text().split("| package | does for us |")[1]
     page = (ROOT / "docs/licences.md").read_text()
@@ -48,7 +57,7 @@ def without_licence():
 def main():
     known = {*cpp_tests(), *python_tests()}
     faults = [fault for page in ("docs/promises.md", "SECURITY.md") for fault in faults_of(page, known)]
-    faults += without_licence()
+    faults += [*unknown_to_mutants(known), *without_licence()]
     print("\n".join(faults) or f"{len(known)} tests are there")
     return bool(faults)
 

@@ -18,6 +18,7 @@ enum class FileFormat {
   pcd_ascii,
   pcd_binary,
   pcd_binary_compressed,
+  las,  ///< only read; written by nothing but a moved copy of a LAS file
   text
 };
 
@@ -25,11 +26,14 @@ struct ReadOptions {
   /// Text files: which columns are x, y and z, by their names or their numbers from 1. Empty: found by their names
   /// (X [m], Easting, Height, ...), else the first three.
   std::vector<std::string> columns;
+  /// LAS: whether points that are classified as noise (7, 18) or withheld are read as well.
+  bool keep_noise = false;
 };
 
-/// Reads the points of a file in chunks: PLY (ascii, both byte orders), PCD (ascii, binary, binary_compressed) and
-/// text (XYZ, TXT, CSV, ASC, PTS and the like). The content decides between them, for text the extension. Properties
-/// other than x, y, z are skipped. Non-finite points are dropped and counted. A file that declares 0 points is an empty
+/// Reads the points of a file in chunks: PLY (ascii, both byte orders), PCD (ascii, binary, binary_compressed), LAS
+/// without compression (1.0 to 1.4, point formats 0 to 10) and text (XYZ, TXT, CSV, ASC, PTS and the like). The content
+/// decides between them, for text the extension. Properties other than x, y, z are skipped. Non-finite points are
+/// dropped and counted, and so is the noise of LAS. A file that declares 0 points is an empty
 /// cloud, no error. Memory is bounded by a chunk whatever the file's size, save for PCD binary_compressed, whose body
 /// (at most 4 GiB) can only be decompressed whole.
 class PointReader {
@@ -48,6 +52,7 @@ class PointReader {
 
   FileFormat format() const;
   std::size_t dropped() const;          ///< non-finite points met so far
+  std::size_t noise() const;            ///< points of LAS left out so far: classified as noise (7, 18) or withheld
   std::size_t declared_points() const;  ///< the header's count; 0 where the format has none
   /// Where the file says that the scanner stood: VIEWPOINT of a PCD unless it is the default, `comment viewpoint x y z`
   /// of a PLY.
@@ -64,6 +69,7 @@ struct LoadedCloud {
   Points points;
   std::optional<Eigen::Vector3d> viewpoint;  ///< where the file says that the scanner stood
   std::size_t dropped = 0;                   ///< non-finite points left out
+  std::size_t noise = 0;                     ///< points of LAS left out: classified as noise (7, 18) or withheld
   FileFormat format = FileFormat::ply_binary_little_endian;
 };
 
@@ -77,13 +83,13 @@ struct WriteOptions {
   std::optional<Eigen::Vector3d> viewpoint = {};
 };
 
-/// The format that a path's extension stands for: .ply and .pcd binary, .xyz, .txt, .csv, .asc, .pts and the like text.
-/// Throws FileError otherwise.
+/// The format that a path's extension stands for: .ply and .pcd binary, .las, .xyz, .txt, .csv, .asc, .pts and the like
+/// text. Throws FileError otherwise.
 FileFormat format_of(const std::filesystem::path& path);
 
 /// Writes to a temporary name beside `path`, then renames: nothing half-written is left. Every format reads back as
-/// exactly the same coordinates. Throws FileError, and InvalidArgument for a coordinate that is not finite (as a
-/// float).
+/// exactly the same coordinates, save LAS, which is not written. Throws FileError, and InvalidArgument for a coordinate
+/// that is not finite (as a float).
 void write_points(const std::filesystem::path& path, PointView points, const WriteOptions& options = {});
 
 /// The same for points that come in chunks, `count` in all, in memory of a chunk (PCD binary_compressed: of the whole).

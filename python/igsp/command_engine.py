@@ -10,8 +10,8 @@ from igsp import _core, survey_formats
 from igsp._core import Features, Result
 from igsp.cluster import Cluster
 
-ScanSource = tuple[str, Sequence[float] | None, Sequence[str], int]
-"""Absolute name of a scan, where its scanner is said to have stood, columns, max_points."""
+ScanSource = tuple[str, Sequence[float] | None, Sequence[str], bool, int]
+"""Absolute name of a scan, where its scanner is said to have stood, columns, keep_noise, max_points."""
 Tick = Callable[[float], object]
 Keep = Callable[[tuple[int, int], Result], None]
 Options = dict[str, Any]

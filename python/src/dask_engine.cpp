@@ -23,23 +23,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// How a worker reads a scan: its absolute name, where the scanner is said to have stood, columns, max_points.
-using ScanSource = std::tuple<std::string, std::optional<std::array<double, 3>>, std::vector<std::string>, std::size_t>;
+// How a worker reads a scan: its absolute name, where the scanner is said to have stood, columns,
+// keep_noise, max_points.
+using ScanSource =
+    std::tuple<std::string, std::optional<std::array<double, 3>>, std::vector<std::string>, bool, std::size_t>;
 
 ScanSource source_of(const cli::ScanReading& reading, const fs::path& file) {
   std::optional<std::array<double, 3>> place;
   if (const auto given = reading.viewpoints.find(file); given != reading.viewpoints.end()) {
     place = {given->second.x(), given->second.y(), given->second.z()};
   }
-  return {fs::absolute(file).string(), place, reading.read.columns, reading.max_points};
+  return {fs::absolute(file).string(), place, reading.read.columns, reading.read.keep_noise, reading.max_points};
 }
 
 cli::ScanReading reading_of(const ScanSource& source) {
-  const auto& [name, place, columns, max_points] = source;
+  const auto& [name, place, columns, keep_noise, max_points] = source;
   cli::ScanReading reading;
   reading.files = {name};
   if (place) reading.viewpoints[name] = Eigen::Vector3d(place->data());
   reading.read.columns = columns;
+  reading.read.keep_noise = keep_noise;
   reading.max_points = max_points;
   return reading;
 }

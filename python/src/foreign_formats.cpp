@@ -40,9 +40,9 @@ void delete_in_python(Chunks* chunks) {
   delete chunks;
 }
 
-cli::ForeignCloud open(nb::handle formats, const fs::path& path) {
+cli::ForeignCloud open(nb::handle formats, const fs::path& path, bool keep_noise) {
   return in_python([&] {
-    const nb::object iterator = formats.attr("read_chunks")(path.string());
+    const nb::object iterator = formats.attr("read_chunks")(path.string(), nb::arg("keep_noise") = keep_noise);
     const std::shared_ptr<Chunks> chunks(new Chunks{iterator, {}}, delete_in_python);
     std::string name = cli::file_of_scan(path).extension().string().substr(1);
     for (char& letter : name) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
@@ -51,10 +51,13 @@ cli::ForeignCloud open(nb::handle formats, const fs::path& path) {
         .next_chunk = [chunks] { return next_chunk(*chunks); },
         .dropped =
             [chunks] { return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("dropped")); }); },
+        .noise =
+            [chunks] {
+              return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("metadata").attr("noise")); });
+            },
         .viewpoint = [chunks] { return in_python([&] { return point_of(chunks->iterator.attr("viewpoint")); }); },
         .scans =
-            [chunks] { return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("scan_count")); }); },
-        .note = [chunks] { return in_python([&] { return nb::cast<std::string>(chunks->iterator.attr("note")); }); }};
+            [chunks] { return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("scan_count")); }); }};
   });
 }
 
@@ -66,7 +69,7 @@ cli::ForeignFormats foreign_formats(nb::handle formats) {
           [formats](const fs::path& path) {
             return in_python([&] { return nb::cast<bool>(formats.attr("is_supported")(path.string())); });
           },
-      .open = [formats](const fs::path& path) { return open(formats, path); },
+      .open = [formats](const fs::path& path, bool keep_noise) { return open(formats, path, keep_noise); },
       .scans =
           [formats](const fs::path& path) {
             return in_python([&] { return nb::cast<std::vector<std::string>>(formats.attr("scans")(path.string())); });

@@ -1,6 +1,8 @@
 #pragma once
 
 #ifdef __SANITIZE_THREAD__
+#include <exception>
+#include <mutex>
 #include <thread>
 #include <vector>
 #else
@@ -26,8 +28,21 @@ void parallel_blocks(std::size_t size, int threads, std::size_t grain, const Bod
   // Debian's TBB is not instrumented: the sanitizer would not see its forks and joins and report every one of them.
   // Plain threads show it the same bodies.
   const std::size_t count = threads == 0 ? std::max(1u, std::thread::hardware_concurrency()) : threads;
-  std::vector<std::jthread> team;
-  for (std::size_t i = 0; i < count; ++i) team.emplace_back([&, i] { body(size * i / count, size * (i + 1) / count); });
+  std::exception_ptr failure;
+  std::mutex mutex;
+  const auto work = [&](std::size_t begin, std::size_t end) {
+    try {
+      body(begin, end);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      failure = std::current_exception();
+    }
+  };
+  {
+    std::vector<std::jthread> team;
+    for (std::size_t i = 0; i < count; ++i) team.emplace_back(work, size * i / count, size * (i + 1) / count);
+  }
+  if (failure) std::rethrow_exception(failure);
 #else
   // TBB prints a warning when asked for more threads than there are processors.
   const int processors = tbb::info::default_concurrency();

@@ -35,7 +35,6 @@ TEST(ParallelBlocks, OneThreadIsTheCallerAndOneBlock) {
   EXPECT_EQ(blocks, 1);
 }
 
-#ifndef __SANITIZE_THREAD__  // the plain threads that stand in for TBB there cannot pass exceptions on
 TEST(ParallelBlocks, ExceptionsReachTheCaller) {
   for (const int threads : {1, 2, 4}) {
     const auto run = [&] {
@@ -46,7 +45,6 @@ TEST(ParallelBlocks, ExceptionsReachTheCaller) {
     EXPECT_THROW(run(), std::runtime_error) << threads << " threads";
   }
 }
-#endif
 
 }  // namespace
 }  // namespace igsp

@@ -91,16 +91,21 @@ RC_GTEST_PROP(PoseError, IsTheTransformationBetweenBothPoses, (std::uint64_t see
 }
 
 TEST(MatchQuality, ByHand) {
-  const Transformation truth(Eigen::Translation3d(10, 0, 0));
-  const Points source{{0, 0, 0}, {5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
-  const Points target{{10, 0, 0.9}, {15, 0, 0}, {10, 5, 1.1}, {50, 50, 50}};  // the third is 1.1 away from its place
-  const std::vector<KeypointMatch> matches{{0, 0}, {1, 2}, {3, 3}};
-  const MatchQuality quality = match_quality(matches, source, target, truth, 1.0);
-  EXPECT_EQ(quality.correct, 1u);
-  EXPECT_EQ(quality.matched, 3u);
-  EXPECT_EQ(quality.possible, 2u);
-  EXPECT_DOUBLE_EQ(quality.precision(), 1.0 / 3.0);
-  EXPECT_DOUBLE_EQ(quality.recall(), 0.5);
+  for (const double unit : {0.1, 1.0, 10.0}) {
+    const Transformation truth(Eigen::Translation3d(10 * unit, 0, 0));
+    Points source{{0, 0, 0}, {5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
+    Points target{{10, 0, 0.9}, {15, 0, 0}, {10, 5, 1.1}, {50, 50, 50}};  // the third is 1.1 away from its place
+    for (Points* points : {&source, &target}) {
+      for (Eigen::Vector3d& point : *points) point *= unit;
+    }
+    const std::vector<KeypointMatch> matches{{0, 0}, {1, 2}, {3, 3}};
+    const MatchQuality quality = match_quality(matches, source, target, truth, unit);
+    EXPECT_EQ(quality.correct, 1u) << unit;
+    EXPECT_EQ(quality.matched, 3u);
+    EXPECT_EQ(quality.possible, 2u) << unit;
+    EXPECT_DOUBLE_EQ(quality.precision(), 1.0 / 3.0);
+    EXPECT_DOUBLE_EQ(quality.recall(), 0.5);
+  }
 }
 
 TEST(MatchQuality, IndexBeyondTheKeypointsIsRefused) {

@@ -164,16 +164,17 @@ PlaneMaps reference_maps(const Points& support, const Eigen::Matrix3d& frame, in
   return maps;
 }
 
-std::array<bool, bsc::pairs> reference_comparison(const double* value) {
+/// (|delta - mean| - sigma) / sigma of every pair: positive where the bit is set.
+std::array<double, bsc::pairs> reference_excess(const double* value) {
   double mean = 0, variance = 0;
   for (const auto& [p, q] : bsc::pair_table) mean += (value[p] - value[q]) / bsc::pairs;
   for (const auto& [p, q] : bsc::pair_table) variance += std::pow(value[p] - value[q] - mean, 2) / bsc::pairs;
-  std::array<bool, bsc::pairs> stands_out;
+  std::array<double, bsc::pairs> excess;
   for (int k = 0; k < bsc::pairs; ++k) {
     const auto& [p, q] = bsc::pair_table[k];
-    stands_out[k] = std::abs(value[p] - value[q] - mean) > std::sqrt(variance);
+    excess[k] = std::abs(value[p] - value[q] - mean) / std::sqrt(variance) - 1;
   }
-  return stands_out;
+  return excess;
 }
 
 struct Agreement {
@@ -193,11 +194,11 @@ void compare_with_reference(const Points& support, const Eigen::Matrix3d& frame,
       ++agreement.away;
       agreement.occupancy_away += differs;
     }
-    const auto depth = reference_comparison(maps.depth), density = reference_comparison(maps.density);
+    const auto depth = reference_excess(maps.depth), density = reference_excess(maps.density);
     for (int k = 0; k < bsc::pairs; ++k) {
       const auto& [p, q] = bsc::pair_table[k];
-      const bool dense = density[k] && !(maps.empty[p] && maps.empty[q]);
-      agreement.comparison += bit_of(descriptor, bsc::depth_begin + plane * bsc::pairs + k) != depth[k];
+      const bool dense = density[k] > 0 && !(maps.empty[p] && maps.empty[q]);
+      agreement.comparison += bit_of(descriptor, bsc::depth_begin + plane * bsc::pairs + k) != (depth[k] > 0);
       agreement.comparison += bit_of(descriptor, bsc::density_begin + plane * bsc::pairs + k) != dense;
     }
   }
@@ -218,6 +219,36 @@ TEST(Bsc, AgreesWithThePlainSpecification) {
   EXPECT_GT(1 - differing / all, 0.98);
   EXPECT_GT(agreement.away, 100 * agreement.descriptors);
   EXPECT_EQ(agreement.occupancy_away, 0);
+}
+
+// In the centres of cells the tabulated weights are exact, and so is every comparison, but for what is equal to sigma.
+TEST(Bsc, ComparesWithSigmaAboutTheMeanOfAllPairs) {
+  Random random(12);
+  const double u = 2 * radius / bsc::side;
+  int wrong = 0, compared = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    Points points;
+    for (int place = 0; place < 12; ++place) {
+      const Eigen::Vector3d cell(random.integer(-3, 3), random.integer(-3, 3), random.integer(-3, 3));
+      points.resize(points.size() + (std::size_t{1} << random.integer(0, 5)), u * cell);
+    }
+    const Descriptor descriptor = binary_shape_context(support_of(points), Eigen::Matrix3d::Identity(), radius);
+    for (int plane = 0; plane < bsc::planes; ++plane) {
+      const PlaneMaps maps = reference_maps(points, Eigen::Matrix3d::Identity(), plane);
+      const auto depth = reference_excess(maps.depth), density = reference_excess(maps.density);
+      for (int k = 0; k < bsc::pairs; ++k) {
+        const auto& [p, q] = bsc::pair_table[k];
+        const bool one_is_occupied = !(maps.empty[p] && maps.empty[q]);
+        for (const auto& [first, excess] : {std::pair(bsc::depth_begin, depth[k]), {bsc::density_begin, density[k]}}) {
+          if (std::abs(excess) < 0.01 || (first == bsc::density_begin && !one_is_occupied)) continue;
+          ++compared;
+          wrong += bit_of(descriptor, first + plane * bsc::pairs + k) != (excess > 0);
+        }
+      }
+    }
+  }
+  EXPECT_GT(compared, 5000);
+  EXPECT_EQ(wrong, 0);
 }
 
 // --- Invariance ---

@@ -9,8 +9,8 @@ namespace {
 
 const auto corpus = std::filesystem::path(IGSP_CORPUS);
 
-/// What the fuzzer has found and what it starts from: all of it is read or refused with a FileError, as PLY, as PCD (by
-/// content) and as text.
+/// What the fuzzer has found and what it starts from: all of it is read or refused with a FileError, as PLY, PCD or LAS
+/// (by content) and as text.
 TEST(Corpus, EveryFileIsReadOrRefused) {
   const testing::TemporaryFolder folder;
   std::size_t files = 0, read = 0, refused = 0;

@@ -16,6 +16,8 @@ FormatFamily family_of(FileFormat format) {
     case FileFormat::pcd_binary:
     case FileFormat::pcd_binary_compressed:
       return FormatFamily::pcd;
+    case FileFormat::las:
+      return FormatFamily::las;
     case FileFormat::text:
       return FormatFamily::text;
   }
@@ -34,6 +36,7 @@ FormatFamily family_of(const std::filesystem::path& path) {
   const std::string extension = extension_of(path);
   if (extension == ".ply") return FormatFamily::ply;
   if (extension == ".pcd") return FormatFamily::pcd;
+  if (extension == ".las") return FormatFamily::las;
   for (const auto text : {".xyz", ".txt", ".csv", ".pts", ".asc", ".tsv", ".xyzn", ".xyzrgb"}) {
     if (extension == text) return FormatFamily::text;
   }
@@ -42,6 +45,7 @@ FormatFamily family_of(const std::filesystem::path& path) {
 
 std::string unknown_format_of(const std::filesystem::path& path) {
   const std::string extension = extension_of(path);
+  if (extension == ".laz") return "compressed LAS (LAZ): use the Python package, pip install 'igsp[las]'";
   for (const auto mesh : {".obj", ".off", ".stl", ".gltf", ".glb", ".fbx", ".3ds", ".dxf", ".wrl"}) {
     if (extension == mesh) return extension + " is a mesh, which igsp does not read: save its vertices as .ply";
   }
@@ -51,7 +55,7 @@ std::string unknown_format_of(const std::filesystem::path& path) {
   for (const auto raw : {".fls", ".zfs", ".rcp", ".rcs", ".rdbx", ".rxp", ".pod", ".cl3", ".bin"}) {
     if (extension == raw) return extension + " is a format of one vendor: export the points as .e57, .las or .ply";
   }
-  return "unknown kind of file; the extension must be one of .ply, .pcd, .xyz, .txt, .csv, .asc, .pts";
+  return "unknown kind of file; the extension must be one of .ply, .pcd, .las, .xyz, .txt, .csv, .asc, .pts";
 }
 
 }  // namespace io
@@ -62,6 +66,8 @@ FileFormat format_of(const std::filesystem::path& path) {
       return FileFormat::ply_binary_little_endian;
     case io::FormatFamily::pcd:
       return FileFormat::pcd_binary;
+    case io::FormatFamily::las:
+      return FileFormat::las;
     case io::FormatFamily::text:
       return FileFormat::text;
     case io::FormatFamily::unknown:

@@ -7,7 +7,7 @@
 
 namespace igsp::io {
 
-enum class FormatFamily { ply, pcd, text, unknown };
+enum class FormatFamily { ply, pcd, las, text, unknown };
 
 FormatFamily family_of(FileFormat format);
 

@@ -32,7 +32,7 @@ TEST(InputFile, AnEmptyFileIsAnError) {
 }
 
 TEST(InputFile, AnUnknownExtensionIsAnErrorUnlessTheContentTells) {
-  expect_unreadable("a.las", "LASF", {"a.las", "unknown kind of file"});
+  expect_unreadable("a.e57", "LAS", {"a.e57", "unknown kind of file"});
   expect_unreadable("a", "1 2 3\n", {"unknown kind of file"});
 }
 

@@ -43,6 +43,9 @@ class MoveJob {
 /// are of another type than in the file.
 bool move_ply(MoveJob& job, bool doubles);
 bool move_pcd(MoveJob& job, bool doubles);
+/// Coordinates are computed anew on a grid of the same resolution where that holds them; every other byte is a copy,
+/// save the direction of waveforms, which turns.
+void move_las(MoveJob& job);
 void move_text(MoveJob& job, const std::vector<std::string>& columns);
 
 }  // namespace igsp::io

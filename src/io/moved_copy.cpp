@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "io/file_format.hpp"
+#include "io/las_fields.hpp"
 #include "io/move_job.hpp"
 #include "io/number_text.hpp"
 #include "io/pcd_header.hpp"
@@ -44,6 +45,12 @@ std::vector<std::string> other_pcd_properties(InputFile& file) {
   return names;
 }
 
+std::vector<std::string> other_las_properties(InputFile& file) {
+  std::vector<std::string> names;
+  for (const LasField& field : las_fields(read_las_header(file))) names.push_back(field.name);
+  return names;
+}
+
 std::vector<std::string> other_columns(InputFile& file, const ReadOptions& options) {
   const TextLayout layout = read_text_layout(file, options.columns);
   std::string_view line;
@@ -76,6 +83,8 @@ std::vector<std::string> other_properties(const fs::path& source, const ReadOpti
       return other_ply_properties(file);
     case FormatFamily::pcd:
       return other_pcd_properties(file);
+    case FormatFamily::las:
+      return other_las_properties(file);
     default:
       return other_columns(file, options);
   }
@@ -94,6 +103,9 @@ bool write_moved(const fs::path& source, const fs::path& destination, const Tran
       break;
     case FormatFamily::pcd:
       other_type = move_pcd(job, options.doubles);
+      break;
+    case FormatFamily::las:
+      move_las(job);
       break;
     default:
       move_text(job, options.read.columns);

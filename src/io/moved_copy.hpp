@@ -15,20 +15,20 @@ struct MoveOptions {
   ProgressCallback progress;  ///< stage "write"
 };
 
-/// Whether `destination` can hold all that `source` does: both PLY, both PCD, or both text of the same kind. Throws
-/// FileError where `source` cannot be opened or `destination` is of no known format.
+/// Whether `destination` can hold all that `source` does: both PLY, both PCD, both LAS, or both text of the same kind.
+/// Throws FileError where `source` cannot be opened or `destination` is of no known format.
 bool keeps_properties(const std::filesystem::path& source, const std::filesystem::path& destination);
 
-/// What belongs to the points of a PLY, PCD or text file beside x, y and z, by its names; PLY elements with their
+/// What belongs to the points of a PLY, PCD, LAS or text file beside x, y and z, by its names; PLY elements with their
 /// count. Throws FileError.
 std::vector<std::string> other_properties(const std::filesystem::path& source, const ReadOptions& options = {});
 
 /// Writes `source`, moved, in the format that it has: coordinates change, normals and other directions turn, the
-/// viewpoint of a PCD or a PLY moves; every other byte is a copy: properties, faces, comments, cells without a point. A
-/// value that does not change keeps its text. Memory is bounded whatever the size, save for PCD binary_compressed,
-/// whose body is one block. The linear part may hold a factor of scale, which directions do not take. Nothing
-/// half-written is left. Throws FileError, also where records that hold no points are cut short, and Cancelled. Returns
-/// whether coordinates are of another type than in `source`.
+/// viewpoint of a PCD or a PLY moves, and so do scale, offset and bounds of a LAS; every other byte is a copy:
+/// properties, faces, comments, cells without a point. A value that does not change keeps its text. Memory is bounded
+/// whatever the size, save for PCD binary_compressed, whose body is one block. The linear part may hold a factor of
+/// scale, which directions do not take. Nothing half-written is left. Throws FileError, also where records that hold no
+/// points are cut short, and Cancelled. Returns whether coordinates are of another type than in `source`.
 bool write_moved(const std::filesystem::path& source, const std::filesystem::path& destination,
                  const Transformation& destination_from_source, const MoveOptions& options = {});
 

@@ -45,13 +45,15 @@ std::vector<MovedFields> find_moved_fields(const std::vector<std::string>& names
   return found;
 }
 
+double length_factor(const Eigen::Matrix3d& linear) {
+  const double cubed = linear.determinant();
+  return std::abs(cubed - 1) < 1e-6 ? 1.0 : std::cbrt(cubed);
+}
+
 Eigen::Vector3d moved(const Eigen::Vector3d& values, bool direction, const Transformation& transformation) {
   if (!values.allFinite()) return values;
   if (!direction) return transformation * values;
-  const double cubed_scale = transformation.linear().determinant();
-  const bool rigid = std::abs(cubed_scale - 1) < 1e-6;
-  const Eigen::Vector3d turned = transformation.linear() * values;
-  return rigid ? turned : Eigen::Vector3d(turned / std::cbrt(cubed_scale));
+  return transformation.linear() * values / length_factor(transformation.linear());
 }
 
 }  // namespace igsp::io

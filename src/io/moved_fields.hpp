@@ -19,6 +19,9 @@ struct MovedFields {
 /// (nx, normal_x, Normal X), axes of cameras and directions of curvature.
 std::vector<MovedFields> find_moved_fields(const std::vector<std::string>& names);
 
+/// By how much a motion makes lengths longer: 1 unless its linear part holds a factor of scale.
+double length_factor(const Eigen::Matrix3d& linear);
+
 /// Where the motion puts them; unchanged where one is not finite.
 Eigen::Vector3d moved(const Eigen::Vector3d& values, bool direction, const Transformation& transformation);
 

@@ -17,6 +17,7 @@ namespace {
 FormatFamily family_of_content(InputFile& file) {
   std::string_view start = file.peek(4096);
   if (start.starts_with("ply\n") || start.starts_with("ply\r") || start.starts_with("ply ")) return FormatFamily::ply;
+  if (start.starts_with("LASF")) return FormatFamily::las;
   if (start.starts_with("# .PCD")) return FormatFamily::pcd;
   while (start.starts_with('#')) start.remove_prefix(std::min(start.find_first_of("\r\n"), start.size() - 1) + 1);
   for (const auto keyword : {"VERSION ", "FIELDS ", "COLUMNS "}) {
@@ -36,6 +37,8 @@ FormatFamily find_family(InputFile& file) {
       file.fail_at_offset(0, "not a PLY file: it does not start with a line 'ply'");
     case FormatFamily::pcd:
       file.fail_at_offset(0, "not a PCD file: it starts neither with '# .PCD' nor with VERSION");
+    case FormatFamily::las:
+      file.fail_at_offset(0, "not a LAS file: it does not begin with LASF");
     default:
       return FormatFamily::text;
   }
@@ -47,6 +50,8 @@ PointBody open_body(InputFile& file, const ReadOptions& options) {
       return open_ply(file);
     case FormatFamily::pcd:
       return open_pcd(file);
+    case FormatFamily::las:
+      return open_las(file, options.keep_noise);
     default:
       return open_text(file, options.columns);
   }
@@ -92,6 +97,9 @@ FileFormat PointReader::format() const {
 std::size_t PointReader::dropped() const {
   return implementation_->chunk.dropped;
 }
+std::size_t PointReader::noise() const {
+  return implementation_->chunk.noise;
+}
 std::size_t PointReader::declared_points() const {
   return implementation_->body.declared_points;
 }
@@ -110,6 +118,7 @@ LoadedCloud read_points(const std::filesystem::path& path, const ReadOptions& op
     cloud.points.insert(cloud.points.end(), chunk.begin(), chunk.end());
   }
   cloud.dropped = reader.dropped();
+  cloud.noise = reader.noise();
   return cloud;
 }
 

@@ -96,6 +96,9 @@ void write_points(const std::filesystem::path& path, std::size_t count, const Ch
   if (options.viewpoint && !options.viewpoint->allFinite()) {
     throw InvalidArgument("options.viewpoint is not finite; three finite coordinates are needed");
   }
+  if (format == FileFormat::las) {
+    throw InvalidArgument(path.string() + ": points alone are not written as LAS; name it .ply, .pcd or .csv");
+  }
   std::size_t written = 0;
   const ChunkSource checked = [&] {
     const PointView chunk = chunks();
@@ -114,6 +117,7 @@ void write_points(const std::filesystem::path& path, std::size_t count, const Ch
     case io::FormatFamily::text:
       io::write_text(file, checked, job);
       break;
+    case io::FormatFamily::las:
     case io::FormatFamily::unknown:
       throw InvalidArgument("options.format is none of the formats");
   }

@@ -150,7 +150,8 @@ TEST(RoundTrip, TheFormatIsThatOfTheExtensionByDefault) {
     write_points(folder / name, points);
     EXPECT_EQ(read_points(folder / name).format, format) << name;
   }
-  io::testing::expect_file_error([] { format_of("scan.las"); }, {"scan.las", ".ply"});
+  EXPECT_EQ(format_of("a.Las"), FileFormat::las);
+  io::testing::expect_file_error([] { format_of("scan.e57"); }, {"scan.e57", ".ply"});
   io::testing::expect_file_error([&] { write_points(folder / "scan", points); }, {"scan"});
 }
 

@@ -60,6 +60,8 @@ RowSource open_rows(InputFile& file, const ReadOptions& options) {
       return open_ply_rows(file);
     case FormatFamily::pcd:
       return open_pcd_rows(file);
+    case FormatFamily::las:
+      return open_las_rows(file, options.keep_noise);
     default:
       return open_text_rows(file, options.columns);
   }

@@ -32,9 +32,9 @@ struct RowSource {
   std::function<bool(std::span<double> row)> next = {};
 };
 
-/// The rows of a PLY, PCD or text file, which must outlive them. Colours that PCD packs into one number are red, green,
-/// blue (and alpha), normals are nx, ny and nz, whatever the file calls them. Numbers of text files are doubles; a cell
-/// without one is not a number. Throws FileError.
+/// The rows of a PLY, PCD, LAS or text file, which must outlive them. Colours that PCD packs into one number are red,
+/// green, blue (and alpha), normals are nx, ny and nz, whatever the file calls them. Numbers of text files are doubles;
+/// a cell without one is not a number. Throws FileError.
 RowSource open_rows(InputFile& file, const ReadOptions& options);
 
 struct RowOutput {
@@ -50,6 +50,7 @@ void write_rows(AtomicFile& file, RowSource& rows, const RowOutput& output);
 // One for each family of formats.
 RowSource open_ply_rows(InputFile& file);
 RowSource open_pcd_rows(InputFile& file);
+RowSource open_las_rows(InputFile& file, bool keep_noise);
 RowSource open_text_rows(InputFile& file, const std::vector<std::string>& columns);
 
 /// How one value is read: it is passed over where `field` is none.

@@ -300,6 +300,13 @@ TEST_F(TamperedCertificate, FailsForWrongTargets) {
   EXPECT_FALSE(certified(problem_, answer_));
 }
 
+// Sums, potentials and edges are all in order: less than the optimum, 3 + 10, which only one source reaches.
+TEST(Certificate, FailsForATargetThatTwoSourcesShare) {
+  const AssignmentProblem problem{2, 1, {{0, 0, 3}, {1, 0, 3}}, 10};
+  EXPECT_FALSE(certified(problem, {{0, 0}, 2, 6, {3, 3}, {0}}));
+  EXPECT_TRUE(certified(problem, {{0, -1}, 1, 13, {10, 10}, {-7}}));
+}
+
 TEST_F(TamperedCertificate, FailsForWrongTotalsAndSizes) {
   Assignment wrong = answer_;
   wrong.energy -= 1;

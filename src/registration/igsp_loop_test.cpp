@@ -176,6 +176,26 @@ TEST(IgspLoop, TakesTheThresholdFromResidualsAfterTheStep) {
   EXPECT_NEAR(second.t_cd, options.energy.p3 * second.w_fd * mean_fd, 1e-6);
 }
 
+// Eq. 3: one suppression radius farther off, a match costs distance_scale more, by the weight of the distance.
+TEST(IgspLoop, ASuppressionRadiusWeighsAsTheDistanceScaleSays) {
+  const Pair pair = moved_copy(14, 200, Transformation::Identity());
+  const Options options = loop_options();
+  LoopSchedule schedule;
+  schedule.first_k = 6;
+  schedule.max_iterations = 1;
+  schedule.bounds = LoopSchedule::Bounds{100, 60};
+  const double radius = options.keypoints.suppression_radius * voxel_size;
+  const auto energy_off_by = [&](double distance) {
+    const Transformation initial(Eigen::Translation3d(distance, 0, 0));
+    const IterationRecord record = run(pair, options, schedule, initial).iterations.at(0);
+    EXPECT_EQ(record.matches, 200u);
+    return record.energy / record.w_ed;
+  };
+  for (const double radii : {0.25, 0.5}) {
+    EXPECT_NEAR(energy_off_by(radii * radius) - energy_off_by(0), 200 * radii * options.energy.distance_scale, 1e-3);
+  }
+}
+
 // A pure translation turns nothing, a rotation about the centroid moves it nowhere: neither is convergence.
 TEST(IgspLoop, ConvergesOnlyWhenBothStepsAreSmall) {
   const Pair still = moved_copy(13, 200, Transformation::Identity());

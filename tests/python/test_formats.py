@@ -269,7 +269,7 @@ def test_rounded_matrix_at_utm_coordinates(tmp_path: Path, extension: str) -> No
 
 @pytest.mark.parametrize(
     ("extension", "package", "extra"),
-    [("las", "laspy", "las"), ("laz", "laspy", "las"), ("laz", "lazrs", "las"), ("e57", "pye57", "e57")],
+    [("laz", "laspy", "las"), ("laz", "lazrs", "las"), ("e57", "pye57", "e57")],
 )
 def test_missing_package_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, extension: str, package: str, extra: str
@@ -287,12 +287,13 @@ def test_missing_package_is_named(
             formats.write_aligned(path, tmp_path / f"aligned.{extension}", motion())
 
 
-def test_text_needs_no_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    paths = [make(tmp_path / f"source.{extension}", random_points(10)) for extension in ("ptx", "pts")]
+def test_las_and_text_need_no_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    paths = [make(tmp_path / f"source.{extension}", random_points(10)) for extension in ("las", "ptx", "pts")]
     for package in ("laspy", "lazrs", "pye57"):
         monkeypatch.setitem(sys.modules, package, None)
     for path in paths:
         assert len(formats.read_cloud(path).points) == 10
+        formats.write_aligned(path, path.with_stem("aligned"), motion())
 
 
 def test_example_of_the_documentation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

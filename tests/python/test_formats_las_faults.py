@@ -41,6 +41,7 @@ def test_records_before_the_points_too_long(tmp_path: Path) -> None:
     ("position", "content", "fault"),
     [
         (24, b"\x01\x04", "byte 94: a header of 227 bytes, LAS 1.4 has 375"),
+        (96, b"\x64\x00\x00\x00", "byte 96: the points begin at byte 100, in the header"),
         (104, b"\x0b", "byte 104: point format 11; LAS has 0 to 10"),
         (105, b"\x0c\x00", "byte 105: points of 12 bytes; point format 1 has at least 28"),
         (131, struct.pack("<d", 0), "byte 131: scale \\(0.0, "),

@@ -13,10 +13,10 @@
 #include "align/scale_request.hpp"
 #include "config/option_list.hpp"
 #include "files/cloud_input.hpp"
-#include "files/columns_flag.hpp"
 #include "files/foreign_formats.hpp"
 #include "files/moved_output.hpp"
 #include "files/output_file.hpp"
+#include "files/read_flags.hpp"
 #include "igsp/align.hpp"
 #include "igsp/diagnosis.hpp"
 #include "igsp/errors.hpp"
@@ -244,8 +244,8 @@ constexpr const char* examples =
     "  igsp align a.pcd b.xyz --preset paper --voxel-size 0.1 -o aligned.ply --transform T.txt --report run.json\n"
     "  igsp align a.ply b.ply --config igsp.toml --threads 4\n"
     "The options start from --preset or --config; flags override them. Exit codes: 0 registered, 1 not registered,\n"
-    "2 usage or option, 3 input or output, 128 + signal. PLY, PCD and text (XYZ, TXT, CSV, PTS) are read, written;\n"
-    "the command of the Python package also takes LAS, LAZ, E57 and PTX, and writes them moved, their attributes kept.";
+    "2 usage or option, 3 input or output, 128 + signal. PLY, PCD, LAS and text (XYZ, CSV, PTS) are read, written;\n"
+    "the command of the Python package also takes LAZ, E57 and PTX, and writes them moved, their attributes kept.";
 
 void add_viewpoint_flag(CLI::App& align, const std::string& cloud, std::string& text) {
   align
@@ -277,7 +277,7 @@ void add_align_command(CLI::App& app, Command& command) {
       ->type_name("FILE");
   align->add_option("--initial", settings->initial, "start from this target_from_source, 4x4 text, instead of a search")
       ->type_name("FILE");
-  add_columns_flag(*align, settings->read);
+  add_read_flags(*align, settings->read);
   add_viewpoint_flag(*align, "source", settings->source_viewpoint);
   add_viewpoint_flag(*align, "target", settings->target_viewpoint);
   align

@@ -85,11 +85,11 @@ constexpr const char* examples =
     "  igsp convert scan.pcd -o scan.ply\n"
     "  igsp convert scan.ply -o scan.csv\n"
     "  igsp convert scan.ply -o small.pcd --encoding compressed\n"
-    "PLY, PCD and text (XYZ, TXT, CSV, PTS) with all numbers that belong to the points, chunk by chunk: names and "
+    "PLY, PCD, LAS and text (XYZ, TXT, CSV, PTS) with all numbers that belong to the points, chunk by chunk: names and "
     "packed\n"
-    "colours change to what programs expect, values do not. The command of the Python package reads LAS, LAZ, E57 and "
-    "PTX\n"
-    "as well (x, y and z alone), and turns LAS into LAZ and back with all that they hold.";
+    "colours change to what programs expect, values do not. The command of the Python package reads LAZ, E57 and PTX\n"
+    "as well (x, y and z alone), and turns LAS into LAZ and back with all that they hold. LAS is written from LAS "
+    "alone.";
 
 }  // namespace
 

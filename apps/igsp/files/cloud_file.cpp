@@ -17,6 +17,8 @@ std::string_view name_of(FileFormat format) {
       return "PCD, binary";
     case FileFormat::pcd_binary_compressed:
       return "PCD, binary compressed";
+    case FileFormat::las:
+      return "LAS";
     case FileFormat::text:
       return "text";
   }
@@ -24,7 +26,7 @@ std::string_view name_of(FileFormat format) {
 }
 
 std::variant<PointReader, ForeignCloud> open(const std::filesystem::path& path, const ReadOptions& options) {
-  if (reads_foreign(path)) return open_foreign(path);
+  if (reads_foreign(path)) return open_foreign(path, options.keep_noise);
   check_not_foreign(path);
   return PointReader(path, PointReader::default_chunk, options);
 }
@@ -55,9 +57,8 @@ std::optional<Eigen::Vector3d> CloudFile::viewpoint() const {
   return std::visit([](const auto& reader) { return reader.viewpoint(); }, reader_);
 }
 
-std::string CloudFile::note() const {
-  const ForeignCloud* foreign = std::get_if<ForeignCloud>(&reader_);
-  return foreign ? foreign->note() : "";
+std::size_t CloudFile::noise() const {
+  return std::visit([](const auto& reader) { return reader.noise(); }, reader_);
 }
 
 std::size_t CloudFile::scans() const {

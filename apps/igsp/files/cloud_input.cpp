@@ -50,13 +50,13 @@ CloudInput sample_cloud(const std::filesystem::path& path, std::size_t max_point
     }
     kept.add(chunk);
     cloud.total += chunk.size();
-    report(progress, stage, cloud.total + reader.dropped(), reader.declared_points());
+    report(progress, stage, cloud.total + reader.dropped() + reader.noise(), reader.declared_points());
   }
   cloud.points = kept.take();
   cloud.dropped = reader.dropped();
   cloud.declared_viewpoint = reader.viewpoint();
   cloud.scans = reader.scans();
-  cloud.note = reader.note();
+  cloud.noise = reader.noise();
   return cloud;
 }
 
@@ -75,7 +75,12 @@ void scale_cloud(CloudInput& cloud, double factor) {
 
 std::vector<std::string> left_out_of(const CloudInput& cloud) {
   std::vector<std::string> lines;
-  if (!cloud.note.empty()) lines.push_back(fmt::format("{}: {}", cloud.path.string(), cloud.note));
+  if (cloud.noise > 0) {
+    lines.push_back(
+        fmt::format("{}: left out {} points that are classified as noise (7, 18) or withheld; --keep-noise "
+                    "keeps them",
+                    cloud.path.string(), cloud.noise));
+  }
   if (cloud.dropped > 0) {
     lines.push_back(fmt::format("{}: dropped {} of {} points with a coordinate that is not finite", cloud.path.string(),
                                 cloud.dropped, cloud.dropped + cloud.total));

@@ -20,11 +20,11 @@ struct CloudInput {
   Points points;            ///< all of them, or a sample if the file holds more than were asked for
   std::size_t total = 0;    ///< finite points in the file
   std::size_t dropped = 0;  ///< points left out for a coordinate that is not finite
+  std::size_t noise = 0;    ///< points of LAS and LAZ left out: classified as noise, or withheld
   Bounds bounds;            ///< of all points
   std::optional<Eigen::Vector3d> declared_viewpoint;  ///< what the file says
   double scale = 1.0;                                 ///< that `points` and the viewpoint are multiplied by
   std::size_t scans = 1;                              ///< in the file
-  std::string note;                                   ///< what was left out of the file, in words; mostly empty
   ViewpointFinding viewpoint;                         ///< where the scanner stood; unknown until settle_viewpoint
   bool whole() const { return points.size() == total; }
   Scan scan() const { return {points, viewpoint.viewpoint}; }

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <iostream>
 
-#include "files/columns_flag.hpp"
 #include "files/output_file.hpp"
+#include "files/read_flags.hpp"
 #include "igsp/errors.hpp"
 #include "spatial/scale.hpp"
 
@@ -15,7 +15,7 @@ namespace igsp::cli {
 void add_cloud_to_cloud_flags(CLI::App& command, CloudToCloud& settings, const std::string& written) {
   command.add_option("CLOUD", settings.source, "the cloud that is read")->required()->type_name("");
   command.add_option("-o,--output", settings.output, wrapped(written))->required()->type_name("FILE");
-  add_columns_flag(command, settings.read);
+  add_read_flags(command, settings.read);
   command.add_flag("--quiet", settings.quiet, "no progress and no warnings");
 }
 

@@ -6,6 +6,7 @@
 
 #include "igsp/errors.hpp"
 #include "io/file_format.hpp"
+#include "io/las_header.hpp"
 
 namespace igsp::cli {
 namespace {
@@ -17,6 +18,11 @@ ForeignFormats& foreign_formats() {
   return formats;
 }
 
+bool reads_itself(const fs::path& path) {
+  const io::FormatFamily family = io::family_of(path);
+  return family != io::FormatFamily::unknown && !(family == io::FormatFamily::las && io::is_compressed_las(path));
+}
+
 }  // namespace
 
 void use_foreign_formats(ForeignFormats formats) {
@@ -24,16 +30,20 @@ void use_foreign_formats(ForeignFormats formats) {
 }
 
 bool reads_foreign(const fs::path& path) {
-  const bool own = io::family_of(path) != io::FormatFamily::unknown;
-  return !own && foreign_formats().reads && foreign_formats().reads(path);
+  return !reads_itself(path) && foreign_formats().reads && foreign_formats().reads(path);
 }
 
 bool moves_foreign(const fs::path& source, const fs::path& output) {
-  return foreign_formats().moves && foreign_formats().moves(source, output);
+  return !moves_las(source, output) && foreign_formats().moves && foreign_formats().moves(source, output);
 }
 
-ForeignCloud open_foreign(const fs::path& path) {
-  return foreign_formats().open(path);
+bool moves_las(const fs::path& source, const fs::path& output) {
+  const auto is_las = [](const fs::path& path) { return io::family_of(path) == io::FormatFamily::las; };
+  return is_las(source) && is_las(output) && !io::is_compressed_las(source);
+}
+
+ForeignCloud open_foreign(const fs::path& path, bool keep_noise) {
+  return foreign_formats().open(path, keep_noise);
 }
 
 std::vector<fs::path> scans_in(const fs::path& path) {
@@ -61,9 +71,8 @@ void write_moved_foreign(const fs::path& source, const fs::path& output, const T
 
 void check_not_foreign(const fs::path& path) {
   const std::string extension = io::extension_of(path);
-  static const std::map<std::string, std::string> extras = {{".las", "[las]"},  {".laz", "[las]"},  {".e57", "[e57]"},
-                                                            {".ptx", ""},       {".obj", "[mesh]"}, {".off", "[mesh]"},
-                                                            {".stl", "[mesh]"}, {".vtk", ""}};
+  static const std::map<std::string, std::string> extras = {{".e57", "[e57]"},  {".ptx", ""},       {".obj", "[mesh]"},
+                                                            {".off", "[mesh]"}, {".stl", "[mesh]"}, {".vtk", ""}};
   const auto extra = extras.find(extension);
   if (extra == extras.end()) return;
   throw FileError(

@@ -15,17 +15,17 @@ struct ForeignCloud {
   std::string format;  ///< what people call it, such as "LAZ"
   ChunkSource next_chunk;
   std::function<std::size_t()> dropped;  ///< non-finite points met so far
+  std::function<std::size_t()> noise;    ///< points of LAZ left out so far: classified as noise, or withheld
   // After the last chunk:
   std::function<std::optional<Eigen::Vector3d>()> viewpoint;  ///< where the file says that the scanner stood
   std::function<std::size_t()> scans;                         ///< how many the points are of
-  std::function<std::string()> note;                          ///< what was left out, in words; mostly empty
 };
 
 /// Files that igsp cannot read or write by itself, and who can: the Python package fills this, the plain command has
 /// none of it. All may throw FileError.
 struct ForeignFormats {
   std::function<bool(const std::filesystem::path&)> reads;
-  std::function<ForeignCloud(const std::filesystem::path&)> open;
+  std::function<ForeignCloud(const std::filesystem::path&, bool keep_noise)> open;
   /// The names of the scans in a file, by which `open` takes each of them alone: FILE#0, FILE#1, ...; the file itself
   /// where it holds a single one.
   std::function<std::vector<std::string>(const std::filesystem::path&)> scans;
@@ -40,10 +40,13 @@ struct ForeignFormats {
 /// Those of this process: it runs one command line. Set before any command runs, not changed later.
 void use_foreign_formats(ForeignFormats formats);
 
-/// Not one of igsp's own formats, but one of theirs.
+/// Not one of igsp's own formats, but one of theirs: also a LAS file whose points are compressed.
 bool reads_foreign(const std::filesystem::path& path);
+/// Theirs, unless igsp moves it by itself.
 bool moves_foreign(const std::filesystem::path& source, const std::filesystem::path& output);
-ForeignCloud open_foreign(const std::filesystem::path& path);
+/// Both LAS without compression, which igsp moves by itself on the grid of integers that the source has.
+bool moves_las(const std::filesystem::path& source, const std::filesystem::path& output);
+ForeignCloud open_foreign(const std::filesystem::path& path, bool keep_noise);
 
 /// Its scans, each to be read by itself. Of a file that cannot be read, the file: reading it says why.
 std::vector<std::filesystem::path> scans_in(const std::filesystem::path& path);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "files/cloud_input.hpp"
-#include "files/columns_flag.hpp"
+#include "files/read_flags.hpp"
 #include "shell/commands.hpp"
 #include "shell/exit_codes.hpp"
 #include "shell/progress_bar.hpp"
@@ -56,7 +56,9 @@ void print_info(const CloudInput& cloud) {
   std::cout << fmt::format("  format                {}\n", cloud.format);
   std::cout << fmt::format("  points                {}{}\n", cloud.total,
                            cloud.dropped > 0 ? fmt::format(" and {} dropped, not finite", cloud.dropped) : "");
-  if (!cloud.note.empty()) std::cout << fmt::format("  note                  {}\n", cloud.note);
+  if (cloud.noise > 0) {
+    std::cout << fmt::format("  left out              {} classified as noise (7, 18) or withheld\n", cloud.noise);
+  }
   std::cout << fmt::format("  extent                {:.6g} x {:.6g} x {:.6g}\n", extent.x(), extent.y(), extent.z());
   std::cout << fmt::format("  from                  {:.10g}\n",
                            fmt::join(cloud.bounds.min.data(), cloud.bounds.min.data() + 3, " "));
@@ -91,8 +93,8 @@ int run_info(const InfoSettings& settings) {
 void add_info_command(CLI::App& app, Command& command) {
   CLI::App* info = app.add_subcommand("info", "what a point cloud file holds, and the voxel size that suits it");
   const auto settings = std::make_shared<InfoSettings>();
-  info->add_option("FILE", settings->paths, "PLY, PCD or text (XYZ, TXT, CSV, PTS)")->required()->type_name("");
-  add_columns_flag(*info, settings->read);
+  info->add_option("FILE", settings->paths, "PLY, PCD, LAS or text (XYZ, TXT, CSV, PTS)")->required()->type_name("");
+  add_read_flags(*info, settings->read);
   info->footer(
       "Example:\n  igsp info scan.ply\n"
       "The voxel size of a pair, one for both clouds, is chosen and printed by `igsp align`.");

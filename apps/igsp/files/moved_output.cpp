@@ -80,7 +80,10 @@ void check_moved_output(const fs::path& source, const fs::path& output) {
                                       output.string(), output.extension().string(), source.string()));
   }
   check_not_foreign(output);
-  format_of(output);
+  if (format_of(output) == FileFormat::las && !moves_las(source, output)) {
+    throw InvalidArgument(fmt::format("-o {}: .las is written only from a SOURCE of the same format, not from {}",
+                                      output.string(), source.string()));
+  }
 }
 
 std::vector<std::string> write_moved_output(const CloudInput& source, const fs::path& output,

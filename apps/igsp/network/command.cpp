@@ -4,8 +4,8 @@
 #include <iostream>
 
 #include "config/option_list.hpp"
-#include "files/columns_flag.hpp"
 #include "files/output_file.hpp"
+#include "files/read_flags.hpp"
 #include "igsp/errors.hpp"
 #include "network/engine.hpp"
 #include "network/first_look.hpp"
@@ -257,7 +257,7 @@ void add_network_command(CLI::App& app, Command& command) {
                    wrapped("... and at least so many agreeing matches, since bare rooms fit each other on few; default "
                            "30"))
       ->type_name("INTEGER");
-  add_columns_flag(*network, settings->read);
+  add_read_flags(*network, settings->read);
   network
       ->add_option("--max-points", settings->max_points,
                    wrapped("a cloud with more points is streamed through the voxel filter instead of kept whole; "

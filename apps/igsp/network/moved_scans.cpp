@@ -52,7 +52,8 @@ std::vector<fs::path> moved_files(const fs::path& folder, const Network& network
 
 // What write_moved_output needs to know of a scan.
 CloudInput look_at(const fs::path& scan, const fs::path& output, const ReadOptions& options) {
-  if (!moves_foreign(scan, output)) return sample_cloud(scan, sample_size, "write", {}, options);
+  if (!moves_foreign(scan, output) && !moves_las(scan, output))
+    return sample_cloud(scan, sample_size, "write", {}, options);
   CloudInput cloud;
   cloud.path = scan;
   return cloud;

@@ -52,6 +52,7 @@ auto if_readable(const fs::path& path, const Read& read) -> std::optional<declty
 
 std::string text_of(const ScanReading& reading, std::size_t scan) {
   std::string text = fmt::format("{} {}", reading.max_points, fmt::join(reading.read.columns, ","));
+  if (reading.read.keep_noise) text += " with noise";
   const auto viewpoint = reading.viewpoints.find(reading.files[scan]);
   if (viewpoint == reading.viewpoints.end()) return text;
   const Eigen::Vector3d& place = viewpoint->second;

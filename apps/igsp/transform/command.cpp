@@ -20,10 +20,10 @@ struct TransformSettings {
   bool inverse = false;
 };
 
-// A first pass tells whether the moved coordinates fit into floats. A survey format keeps the grid of integers that it
-// has: nothing to be told.
+// A first pass tells whether the moved coordinates fit into floats. LAS and survey formats keep the grid of integers
+// that they have: nothing to be told.
 CloudInput first_pass(const CloudToCloud& clouds, const ProgressCallback& progress) {
-  if (!moves_foreign(clouds.source, clouds.output)) {
+  if (!moves_foreign(clouds.source, clouds.output) && !moves_las(clouds.source, clouds.output)) {
     return sample_cloud(clouds.source, sample_size, "read", progress, clouds.read);
   }
   CloudInput cloud;
@@ -61,8 +61,9 @@ constexpr const char* examples =
     "  igsp transform moved.ply --transform T.txt --inverse -o back.ply\n"
     "Chunk by chunk, in memory that does not grow with the cloud (PCD binary_compressed is one block, which does). "
     "PLY,\n"
-    "PCD and text (XYZ, TXT, CSV, PTS) keep all that belongs to their points: `igsp align -o` writes the same file.\n"
-    "The command of the Python package moves LAS, LAZ, E57 and PTX as well.";
+    "PCD, LAS and text (XYZ, TXT, CSV, PTS) keep all that belongs to their points: `igsp align -o` writes the same "
+    "file.\n"
+    "The command of the Python package moves LAZ, E57 and PTX as well.";
 
 }  // namespace
 

@@ -2,7 +2,7 @@
 
 The vertices of OBJ, OFF and STL are read with `pip install 'igsp[mesh]'`, the points of legacy VTK files with nothing.
 
-LAS, LAZ and COPC need `pip install 'igsp[las]'`, E57 needs `pip install 'igsp[e57]'`; PTX and PTS need nothing.
+LAZ and COPC need `pip install 'igsp[las]'`, E57 needs `pip install 'igsp[e57]'`; LAS, PTX and PTS need nothing.
 What each format keeps and how its poses, scales and coordinate systems are treated: docs/formats.md.
 """
 

@@ -25,6 +25,8 @@ WAVEFORM_START = 227  # u64, from LAS 1.3
 FIRST_EVLR = 235  # u64, then u32 count, u64 number of points, from LAS 1.4
 SMALLEST_HEADER = 227
 RECORD_LENGTHS = (20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67)  # bytes of a point of format 0, 1, ... without extra ones
+FIRST_WITH_FLAGS = 6  # of the point formats, those that have a byte for flags; before, three bits beside the class
+PULSE_DIRECTION = {4: 45, 5: 51, 9: 47, 10: 55}  # by point format with waveforms: where three floats lie in a point
 LARGEST_COORDINATE = 1e30  # beyond it arithmetic would overflow
 COMPRESSED = 0x80  # bit of the point format
 VLR = struct.Struct("<2x16sHH32x")  # user, record, length
@@ -96,6 +98,8 @@ def read_layout(path: PathLike) -> Layout:
             raise FormatError(path, f"byte {HEADER_SIZE}: a header of {size} bytes, LAS 1.{minor} has {needed}")
         if len(header) < size or length < points_start:
             raise FormatError(path, f"byte {length}: the file ends before its points begin")
+        if points_start < size:
+            raise FormatError(path, f"byte {HEADER_SIZE + 2}: the points begin at byte {points_start}, in the header")
         waveform_start = struct.unpack_from("<Q", header, WAVEFORM_START)[0] if minor >= 3 else 0
         evlr_start, evlr_count = struct.unpack_from("<QI", header, FIRST_EVLR) if minor >= 4 else (0, 0)
         if minor >= 4:
@@ -117,6 +121,21 @@ def read_layout(path: PathLike) -> Layout:
     )
     _check(path, layout)
     return layout
+
+
+def record_type(layout: Layout) -> np.dtype[np.void]:
+    """What of a point has to be understood, under the names that laspy has; the bytes between are kept as they are."""
+    fields = {"X": ("<i4", 0), "Y": ("<i4", 4), "Z": ("<i4", 8)}
+    if layout.point_format < FIRST_WITH_FLAGS:
+        fields["raw_classification"] = ("u1", 15)
+    else:
+        fields |= {"classification_flags": ("u1", 15), "classification": ("u1", 16)}
+    if start := PULSE_DIRECTION.get(layout.point_format):
+        fields |= {"x_t": ("<f4", start), "y_t": ("<f4", start + 4), "z_t": ("<f4", start + 8)}
+    formats, offsets = zip(*fields.values(), strict=True)
+    return np.dtype(
+        {"names": [*fields], "formats": [*formats], "offsets": [*offsets], "itemsize": layout.record_length}
+    )
 
 
 def read_crs(path: PathLike, layout: Layout) -> tuple[str | None, int | None]:

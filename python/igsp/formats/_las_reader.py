@@ -1,4 +1,4 @@
-"""The points of LAS and LAZ files (COPC is LAZ), through laspy and lazrs."""
+"""The points of LAS files and, through laspy and lazrs, of LAZ (COPC is LAZ)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from ._cloud import FormatError, Metadata, PathLike, Points, Scan, Selection, fa
 from ._las_layout import Layout
 
 NOISE_CLASSES = (7, 18)  # low and high noise, table 17 of the LAS 1.4 specification
-FIRST_WITH_FLAGS = 6  # of the point formats, those that have a byte for flags; before, three bits beside the class
 WITHHELD = 4
 BYTES_AT_ONCE = 1 << 28  # of records, before a single one of them has been seen
 
@@ -44,7 +43,7 @@ def read(path: PathLike, selection: Selection, metadata: Metadata, points_per_ch
 
 def is_noise(records: Any, point_format: int) -> NDArray[np.bool_]:
     """(N,): classified as noise, or withheld: what their maker asks to leave out."""
-    if point_format < FIRST_WITH_FLAGS:
+    if point_format < _las_layout.FIRST_WITH_FLAGS:
         flags, classes = records["raw_classification"] >> 5, records["raw_classification"] & 0x1F
     else:
         flags, classes = records["classification_flags"], records["classification"]
@@ -57,11 +56,28 @@ def read_records(path: PathLike, layout: Layout, points_per_chunk: int, points_o
 
     `points_only`: nothing but coordinates, classes and flags has to be right.
     """
-    laspy = require("laspy", path, "las")
-    if layout.compressed:
-        require("lazrs", path, "las")
-        _laz_layout.check(path, layout)
     points_per_chunk = min(points_per_chunk, max(1, BYTES_AT_ONCE // layout.record_length))
+    chunks = _read_compressed if layout.compressed else _read_plain
+    total = 0
+    for records in chunks(path, layout, points_per_chunk, points_only):
+        total += len(records)
+        yield records
+    if total != layout.point_count:
+        raise FormatError(path, f"the file ends after {total} of {layout.point_count} points")
+
+
+def _read_plain(path: PathLike, layout: Layout, points_per_chunk: int, points_only: bool) -> Iterator[Any]:
+    with open(path, "rb") as file:
+        file.seek(layout.points_start)
+        for start in range(0, layout.point_count, points_per_chunk):
+            count = min(points_per_chunk, layout.point_count - start)
+            yield np.fromfile(file, _las_layout.record_type(layout), count)
+
+
+def _read_compressed(path: PathLike, layout: Layout, points_per_chunk: int, points_only: bool) -> Iterator[Any]:
+    laspy = require("laspy", path, "las")
+    require("lazrs", path, "las")
+    _laz_layout.check(path, layout)
     fields = laspy.DecompressionSelection.all()
     if points_only:  # spares LAZ of point formats 6 to 10 the decompression of the rest
         fields = laspy.DecompressionSelection.base().decompress_z().decompress_classification().decompress_flags()
@@ -78,5 +94,3 @@ def read_records(path: PathLike, layout: Layout, points_per_chunk: int, points_o
                 break
             total += len(records)
             yield records
-    if total != layout.point_count:
-        raise FormatError(path, f"the file ends after {total} of {layout.point_count} points")

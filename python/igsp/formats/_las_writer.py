@@ -23,7 +23,6 @@ from ._las_reader import read_records
 POINTS_AT_ONCE = 500_000
 COPY_AT_ONCE = 1 << 22
 LARGEST = 2**31 - 1  # magnitude of a stored coordinate
-WAVEFORM_FORMATS = (4, 5, 9, 10)
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ def write_aligned(source: PathLike, output: PathLike, target_from_source: Points
     compress = name.endswith(".laz")
     if name.endswith(".copc.laz"):
         raise FormatError(output, "COPC cannot be written: name it .laz, which keeps all but the octree")
-    if compress and layout.point_format in WAVEFORM_FORMATS:
+    if compress and layout.point_format in _las_layout.PULSE_DIRECTION:
         # lazrs 0.8 garbles the wave packets of formats 9 and 10, and LASzip refuses what it makes of 4 and 5.
         fault = f"point format {layout.point_format} with its waveforms cannot be compressed: name it .las"
         raise FormatError(output, fault)
@@ -130,7 +129,7 @@ class _Copy:
             self.lowest = np.minimum(self.lowest, stored.min(axis=0))
             self.highest = np.maximum(self.highest, stored.max(axis=0))
             records["X"], records["Y"], records["Z"] = stored.T
-            if self.layout.point_format in WAVEFORM_FORMATS:  # the direction of the pulse turns with the points
+            if self.layout.point_format in _las_layout.PULSE_DIRECTION:  # the direction of the pulse turns with the points
                 pulse = np.column_stack([records["x_t"], records["y_t"], records["z_t"]]).astype(np.float64)
                 records["x_t"], records["y_t"], records["z_t"] = _motion.turn(self.motion, pulse).T
             yield records

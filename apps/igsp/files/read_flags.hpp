@@ -7,8 +7,8 @@
 
 namespace igsp::cli {
 
-/// Adds --columns, which fills `options`; they live as long as the command.
-inline void add_columns_flag(CLI::App& command, ReadOptions& options) {
+/// Adds --columns and --keep-noise, which fill `options`; they live as long as the command.
+inline void add_read_flags(CLI::App& command, ReadOptions& options) {
   command
       .add_option("--columns", options.columns,
                   wrapped("text files: the columns of x, y and z, by name or by number from 1, such as "
@@ -16,6 +16,10 @@ inline void add_columns_flag(CLI::App& command, ReadOptions& options) {
       ->delimiter(',')
       ->expected(3)
       ->type_name("X,Y,Z");
+  command.add_flag(
+      "--keep-noise", options.keep_noise,
+      wrapped("LAS and LAZ: with the points that are classified as noise (7, 18) or withheld, which are left "
+              "out by default"));
 }
 
 }  // namespace igsp::cli
