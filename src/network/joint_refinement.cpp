@@ -30,7 +30,8 @@ constexpr double damping = 1.0;  // [voxels, or at the rim of the scan]
 // A scan in its own centred frame, lengths in voxels, with all normals known, so that several threads may read it.
 class SharedSurface {
  public:
-  explicit SharedSurface(const Features& features) : points_(features.fine_points), centre_(Eigen::Vector3d::Zero()) {
+  explicit SharedSurface(const Features& features)
+      : voxels_(features.points.size()), points_(features.fine_points), centre_(Eigen::Vector3d::Zero()) {
     for (Eigen::Vector3d& point : points_) point /= features.voxel_size;
     for (const Eigen::Vector3d& point : points_) centre_ += point / static_cast<double>(points_.size());
     for (const Eigen::Vector3d& point : points_) squared_size_ += (point - centre_).squaredNorm() / points_.size();
@@ -43,8 +44,10 @@ class SharedSurface {
   Surface& surface() { return *surface_; }
   const Eigen::Vector3d& centre() const { return centre_; }
   double squared_size() const { return squared_size_; }
+  std::size_t voxels() const { return voxels_; }  ///< that the pair was registered with, not the finer ones here
 
  private:
+  std::size_t voxels_;
   Points points_;
   Eigen::Vector3d centre_;
   double squared_size_ = 0;
@@ -131,10 +134,13 @@ class Bundle {
   }
 
   RelativeFactor factor(const NetworkLink& link, double radius) {
-    SharedSurface &source = *surfaces_[link.source], &target = *surfaces_[link.target];
-    const Transformation pose = poses_[link.target].inverse() * poses_[link.source];
+    // The larger one moves, as it did when the pair was registered.
+    const bool exchanged = surfaces_[link.target]->voxels() > surfaces_[link.source]->voxels();
+    const std::size_t moving = exchanged ? link.target : link.source, fixed = exchanged ? link.source : link.target;
+    SharedSurface &source = *surfaces_[moving], &target = *surfaces_[fixed];
+    const Transformation pose = poses_[fixed].inverse() * poses_[moving];
     const Linearisation at_pose = linearise_at(source.surface(), target.surface(), pose, radius, max_points);
-    RelativeFactor result{link.source, link.target, pose, at_pose.centre, Matrix6::Zero(), Vector6::Zero()};
+    RelativeFactor result{moving, fixed, pose, at_pose.centre, Matrix6::Zero(), Vector6::Zero()};
     if (at_pose.pairs >= min_pairs && at_pose.residual_variance > 0) {
       result.information = at_pose.hessian / at_pose.residual_variance;
       result.gradient = at_pose.gradient / at_pose.residual_variance;

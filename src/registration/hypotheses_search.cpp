@@ -114,18 +114,12 @@ Transformation settle(Surface& source, Surface& target, const Transformation& in
                                {coarse_points, coarse_points, coarse_radii, 0, voxel_size, options.degrees_of_freedom});
 }
 
-// Down to the noise of the scanner, on the finer voxels.
-void refine(const ScaleLadder& scales, const Options& options, StageClock& clock, SearchOutcome& outcome) {
+void refine(ScaleLadder& scales, const Options& options, StageClock& clock, SearchOutcome& outcome) {
   clock.start("refinement");
-  FineSurfaces surfaces(scales.source(), scales.target());
   if (options.refinement.enabled) {
-    const auto radii = std::span(fine_radii).subspan(first_fine_radius[outcome.rung]);
-    outcome.target_from_source =
-        refine_point_to_plane(surfaces.source, surfaces.target, outcome.target_from_source,
-                              {early_fine_points, fine_points, radii, max_last_steps, scales.voxel_size(0),
-                               options.degrees_of_freedom});
+    outcome.target_from_source = refined(scales, outcome.rung, outcome.target_from_source, options);
   }
-  outcome.precision = precision_at(surfaces, outcome.target_from_source, options.degrees_of_freedom);
+  outcome.precision = precision_at(scales.fine_surfaces(), outcome.target_from_source, options.degrees_of_freedom);
 }
 
 // The loop at the scale that was searched, the refinement at the finest one.
@@ -227,6 +221,15 @@ bool can_tell(ScaleLadder& scales, std::size_t rung) {
 }
 
 }  // namespace
+
+Transformation refined(ScaleLadder& scales, std::size_t rung, const Transformation& target_from_source,
+                       const Options& options) {
+  FineSurfaces& surfaces = scales.fine_surfaces();
+  const auto radii = std::span(fine_radii).subspan(first_fine_radius[rung]);
+  return refine_point_to_plane(surfaces.source, surfaces.target, target_from_source,
+                               {early_fine_points, fine_points, radii, max_last_steps, scales.voxel_size(0),
+                                options.degrees_of_freedom});
+}
 
 SearchOutcome hypotheses_search(ScaleLadder& scales, const Options& options, StageClock& clock) {
   SearchOutcome outcome;

@@ -12,6 +12,8 @@ namespace {
 // noise.
 constexpr double certain_quality = 2.5;
 
+constexpr double undecided = 0.5;  // odds of poses that a finer rung cannot tell from the answer
+
 }  // namespace
 
 std::vector<Rival> distinct_rivals(std::span<const Rival> rivals, const Transformation& pose, double voxel_size) {
@@ -43,8 +45,10 @@ double contradiction_by(std::span<const Rival> ranked, const Rival& pose, double
   });
   std::vector<Rival> rivals = distinct_rivals(ranked, pose.target_from_source, voxel_size);
   std::erase_if(rivals, [](const Rival& rival) { return rival.assessment.quality < 0; });
-  const double odds = odds_of(rivals, place == ranked.end() ? pose.assessment : place->assessment);
-  return odds < 1 ? 0 : odds;
+  // A pose that was tried there and moved away stands no better than chance.
+  PoseAssessment moved_away;
+  const double odds = odds_of(rivals, place == ranked.end() ? moved_away : place->assessment);
+  return odds < undecided ? 0 : odds;
 }
 
 double confidence_of(const PoseAssessment& pose, double rival_odds) {

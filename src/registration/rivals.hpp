@@ -20,7 +20,7 @@ std::vector<Rival> distinct_rivals(std::span<const Rival> rivals, const Transfor
 double odds_of(std::span<const Rival> rivals, const PoseAssessment& against);
 
 /// What the ranking of another rung says against `pose`: the odds of the poses there that more than chance speaks for,
-/// against the place of `pose` among them or, where it has none, its own assessment. 0 where they do not outweigh it:
+/// against the place of `pose` among them. 0 where they hardly weigh:
 /// the rung of an answer knows best.
 double contradiction_by(std::span<const Rival> ranked, const Rival& pose, double voxel_size);
 

@@ -59,4 +59,9 @@ CommonFrame& ScaleLadder::frame(std::size_t rung) {
   return clouds->frame;
 }
 
+FineSurfaces& ScaleLadder::fine_surfaces() {
+  if (!fine_surfaces_) fine_surfaces_.emplace(source(), target());
+  return *fine_surfaces_;
+}
+
 }  // namespace igsp

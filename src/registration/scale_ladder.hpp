@@ -6,6 +6,7 @@
 
 #include "core/stage_clock.hpp"
 #include "registration/common_frame.hpp"
+#include "registration/precision.hpp"
 
 namespace igsp {
 
@@ -22,6 +23,8 @@ class ScaleLadder {
   std::size_t rungs() const { return rungs_.size(); }  ///< at least one; none where too few voxels would be left
   double voxel_size(std::size_t rung) const { return rungs_[rung].target.voxel_size; }
   CommonFrame& frame(std::size_t rung);
+
+  FineSurfaces& fine_surfaces();  ///< what the fine registration works on
 
   const Features& source() const { return rungs_[0].source; }  ///< of rung 0; complete only after frame(0)
   const Features& target() const { return rungs_[0].target; }
@@ -48,6 +51,7 @@ class ScaleLadder {
   StageClock& clock_;
   std::deque<Coarser> coarser_;  // from rung 1 on
   std::deque<Rung> rungs_;
+  std::optional<FineSurfaces> fine_surfaces_;
 };
 
 }  // namespace igsp

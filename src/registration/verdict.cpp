@@ -14,12 +14,18 @@ namespace {
 // Of a pose that may look right, where something else says that it is not known or not possible.
 constexpr double confidence_of_what_cannot_be = 0.1;
 
+constexpr double near_quality = 1.5;  // decades below the answer's
+
 // Of the overlap that a coarser rung sees, what the finest one sees at right poses of sparse scan lines is 0.3 and more,
 // where coordinates are rounded to steps of several voxels 0.18, at a pose that is only nearly right 0.12.
 constexpr double overlap_that_is_left = 0.25;
+// From so much on the surfaces are closed at v, and what the finest rung says against a pose has nothing to do with
+// sparse lines: a corridor with equal doors 0.95, with a confidence of 0.80 at 4 v and 0.02 at v; scan lines to 0.65.
+constexpr double overlap_of_closed_surfaces = 0.7;
 
-// What one scale says of a pose.
+// What one rung says of a pose.
 struct Judgement {
+  std::size_t rung = 0;
   PoseAssessment pose;
   std::vector<Rival> rivals;
   std::vector<FreeDirection> free_directions;
@@ -35,6 +41,10 @@ std::vector<FreeDirection> free_directions_at(ScaleLadder& scales, std::size_t r
   return free_directions_at(scales, std::min<std::size_t>(rung - 1, 1), target_from_source);
 }
 
+void sort_by_quality(std::vector<Rival>& rivals) {
+  std::ranges::stable_sort(rivals, std::greater(), [](const Rival& rival) { return rival.assessment.quality; });
+}
+
 // Other poses as a rung knows them: its own, refined there, or else those of the rung that answered.
 std::vector<Rival> rivals_at(ScaleLadder& scales, std::size_t rung, const SearchOutcome& outcome) {
   if (outcome.ranked.empty()) return {};
@@ -42,19 +52,52 @@ std::vector<Rival> rivals_at(ScaleLadder& scales, std::size_t rung, const Search
   if (!outcome.ranked[rung].empty()) return distinct_rivals(outcome.ranked[rung], outcome.target_from_source, v);
   std::vector<Rival> rivals = distinct_rivals(outcome.ranked[outcome.rung], outcome.target_from_source, v);
   for (Rival& rival : rivals) rival.assessment = assess_pose(scales.frame(rung), rival.target_from_source);
-  std::ranges::stable_sort(rivals, std::greater(), [](const Rival& rival) { return rival.assessment.quality; });
+  sort_by_quality(rivals);
   return rivals;
 }
 
-Judgement judgement_at(ScaleLadder& scales, std::size_t rung, const SearchOutcome& outcome) {
-  Judgement judgement;
-  judgement.pose = assess_pose(scales.frame(rung), outcome.target_from_source);
-  judgement.free_directions = free_directions_at(scales, rung, outcome.target_from_source);
-  judgement.rivals = rivals_at(scales, rung, outcome);
+void weigh(const SearchOutcome& outcome, Judgement& judgement) {
   judgement.rival_odds = std::max(odds_of(judgement.rivals, judgement.pose), outcome.contradiction);
   judgement.confidence = confidence_of(judgement.pose, judgement.rival_odds);
   if (!judgement.free_directions.empty()) {
     judgement.confidence = std::min(judgement.confidence, confidence_of_what_cannot_be);
+  }
+}
+
+Judgement judgement_at(ScaleLadder& scales, std::size_t rung, const SearchOutcome& outcome) {
+  Judgement judgement;
+  judgement.rung = rung;
+  judgement.pose = assess_pose(scales.frame(rung), outcome.target_from_source);
+  judgement.free_directions = free_directions_at(scales, rung, outcome.target_from_source);
+  judgement.rivals = rivals_at(scales, rung, outcome);
+  weigh(outcome, judgement);
+  return judgement;
+}
+
+// The answer has been refined since the poses were ranked; those that came near it get the same chance.
+void refine_rivals(ScaleLadder& scales, const SearchOutcome& outcome, const Options& options, Judgement& judgement) {
+  const std::size_t rung = judgement.rung;
+  bool is_changed = false;
+  for (Rival& rival : judgement.rivals) {
+    const double quality = rival.assessment.quality;
+    if (quality < 0 || quality < judgement.pose.quality - near_quality) break;
+    const Transformation pose = refined(scales, rung, rival.target_from_source, options);
+    const PoseAssessment assessment = assess_pose(scales.frame(rung), pose);
+    if (assessment.quality > quality) rival = {pose, assessment}, is_changed = true;
+  }
+  if (!is_changed) return;
+  sort_by_quality(judgement.rivals);
+  judgement.rivals = distinct_rivals(judgement.rivals, outcome.target_from_source, scales.voxel_size(rung));
+  weigh(outcome, judgement);
+}
+
+// The rung that answered or, where it does not carry the answer, another one.
+Judgement most_confident(ScaleLadder& scales, const SearchOutcome& outcome) {
+  Judgement judgement = judgement_at(scales, outcome.rung, outcome);
+  for (std::size_t rung = outcome.finest_rung; rung < scales.rungs() && judgement.confidence < 0.5; ++rung) {
+    if (rung == outcome.rung) continue;
+    Judgement other = judgement_at(scales, rung, outcome);
+    if (other.confidence > judgement.confidence) judgement = std::move(other);
   }
   return judgement;
 }
@@ -84,19 +127,20 @@ Doubts judge(ScaleLadder& scales, const SearchOutcome& outcome, Result& result) 
   result.termination = outcome.termination;
   result.has_estimate = outcome.has_estimate;
   if (!outcome.has_estimate) return {};
-  std::size_t judged = outcome.rung;
-  Judgement judgement = judgement_at(scales, judged, outcome);
-  for (std::size_t rung = outcome.finest_rung; rung < scales.rungs() && judgement.confidence < 0.5; ++rung) {
-    if (rung == outcome.rung) continue;
-    Judgement other = judgement_at(scales, rung, outcome);
-    if (other.confidence <= judgement.confidence) continue;
-    judgement = std::move(other);
-    judged = rung;
+  tell_overlap(scales, outcome.target_from_source, result);
+  const double overlap_at_v = std::sqrt(result.overlap_source * result.overlap_target);
+  Judgement judgement = most_confident(scales, outcome);
+  if (judgement.confidence >= 0.5 && result.options.refinement.enabled) {
+    refine_rivals(scales, outcome, result.options, judgement);
   }
-  result.evidence.voxel_size = scales.voxel_size(judged);
+  const bool is_closed_at_v = overlap_at_v >= overlap_of_closed_surfaces * judgement.pose.overlap();
+  if (judgement.confidence >= 0.5 && judgement.rung > outcome.finest_rung && is_closed_at_v) {
+    Judgement finest = judgement_at(scales, outcome.finest_rung, outcome);
+    if (finest.confidence < 0.5) judgement = std::move(finest);
+  }
+  result.evidence.voxel_size = scales.voxel_size(judgement.rung);
 
   const PoseAssessment& pose = judgement.pose;
-  tell_overlap(scales, outcome.target_from_source, result);
   result.rmse = outcome.precision.inlier_rmse;
   result.precision = outcome.precision;
   result.precision.free_directions = judgement.free_directions;
@@ -109,11 +153,12 @@ Doubts judge(ScaleLadder& scales, const SearchOutcome& outcome, Result& result) 
   result.runner_up = runner_up_of(judgement);
   result.confidence = judgement.confidence;
   Doubts doubts;
-  doubts.is_coarse = result.confidence >= 0.5 &&
-                     std::sqrt(result.overlap_source * result.overlap_target) < overlap_that_is_left * pose.overlap();
+  doubts.is_coarse = result.confidence >= 0.5 && overlap_at_v < overlap_that_is_left * pose.overlap();
   doubts.is_of_another_scale = result.confidence >= 0.5 && is_of_another_scale(result.precision);
   doubts.is_ambiguous = judgement.rival_odds > pose.chance_odds();
-  if (doubts.is_of_another_scale || doubts.is_coarse) result.confidence = std::min(result.confidence, confidence_of_what_cannot_be);
+  if (doubts.is_of_another_scale || doubts.is_coarse) {
+    result.confidence = std::min(result.confidence, confidence_of_what_cannot_be);
+  }
   result.registered = result.confidence >= 0.5;
   return doubts;
 }
