@@ -22,6 +22,7 @@ constexpr double overlap_that_is_left = 0.25;
 // From so much on the surfaces are closed at v, and what the finest rung says against a pose has nothing to do with
 // sparse lines: a corridor with equal doors 0.95, with a confidence of 0.80 at 4 v and 0.02 at v; scan lines to 0.65.
 constexpr double overlap_of_closed_surfaces = 0.7;
+constexpr double contradicted = 0.2;  // like rooms, half a turn off: 0.01 to 0.12 at v
 
 // What one rung says of a pose.
 struct Judgement {
@@ -93,8 +94,10 @@ void refine_rivals(ScaleLadder& scales, const SearchOutcome& outcome, const Opti
 
 // The rung that answered or, where it does not carry the answer, another one.
 Judgement most_confident(ScaleLadder& scales, const SearchOutcome& outcome) {
+  // Where nothing was searched no rival is known, and large voxels alone hardly tell poses apart.
+  const std::size_t rungs = outcome.ranked.empty() ? std::min<std::size_t>(2, scales.rungs()) : scales.rungs();
   Judgement judgement = judgement_at(scales, outcome.rung, outcome);
-  for (std::size_t rung = outcome.finest_rung; rung < scales.rungs() && judgement.confidence < 0.5; ++rung) {
+  for (std::size_t rung = outcome.finest_rung; rung < rungs && judgement.confidence < 0.5; ++rung) {
     if (rung == outcome.rung) continue;
     Judgement other = judgement_at(scales, rung, outcome);
     if (other.confidence > judgement.confidence) judgement = std::move(other);
@@ -136,7 +139,7 @@ Doubts judge(ScaleLadder& scales, const SearchOutcome& outcome, Result& result) 
   const bool is_closed_at_v = overlap_at_v >= overlap_of_closed_surfaces * judgement.pose.overlap();
   if (judgement.confidence >= 0.5 && judgement.rung > outcome.finest_rung && is_closed_at_v) {
     Judgement finest = judgement_at(scales, outcome.finest_rung, outcome);
-    if (finest.confidence < 0.5) judgement = std::move(finest);
+    if (finest.confidence < contradicted) judgement = std::move(finest);
   }
   result.evidence.voxel_size = scales.voxel_size(judgement.rung);
 
