@@ -4,7 +4,7 @@ jobs := $(shell nproc)
 igsp := build/release/bin/igsp
 demo := build/demo
 
-.PHONY: all build setup demo test deb container docs wheel wheels bench bench-scrambles bench-peers calibrate paper asan tsan fuzz mutants tidy format install clean
+.PHONY: all build setup demo test deb container docs wheel wheels bench bench-scrambles bench-peers profile calibrate paper asan tsan fuzz mutants tidy format install clean
 
 all: build
 
@@ -49,6 +49,7 @@ asan tsan:
 	ctest --preset $@ -j $(jobs)
 
 bench: setup
+	@scripts/setup.sh valgrind  # its header, for igsp_profile
 	cmake --preset release -DIGSP_BUILD_BENCHMARKS=ON
 	cmake --build --preset release
 	set -e; for benchmark in build/release/bin/*_benchmark; do $$benchmark; done
@@ -103,6 +104,13 @@ paper:
 	/usr/bin/python3 benchmarks/paper/figures.py --data $(paper_data) --out docs/paper
 	/usr/bin/python3 benchmarks/paper/pictures.py --pairs build/paper --data $(paper_data) --out docs/paper
 	/usr/bin/python3 benchmarks/paper/report.py --data $(paper_data) --out docs/paper/README.md
+
+# What docs/profile.md shows: instructions a stage, counted by callgrind. Some minutes of one core.
+profile:
+	@scripts/setup.sh valgrind binutils
+	cmake --preset release -DIGSP_BUILD_BENCHMARKS=ON
+	cmake --build --preset release --target igsp_profile
+	/usr/bin/python3 scripts/instructions.py build/release/bin/igsp_profile docs/profile.md
 
 # Every target for a minute. New inputs land in build/fuzz/inputs; a crash is written beside the Makefile and stops the
 # run.
