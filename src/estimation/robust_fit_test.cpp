@@ -52,6 +52,24 @@ TEST(RobustFit, HalfOfThePairsMayBeWrong) {
   }
 }
 
+TEST(RobustFit, DoesNotDependOnTheUnitOfLength) {
+  Random random(3);
+  const Transformation truth = small_motion(random, false);
+  constexpr double unit = 1024;
+  std::vector<PointPair> pairs(50), larger(50);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    pairs[i].source = random.in_cube(5);
+    pairs[i].target = truth * pairs[i].source + random.in_cube(0.1);
+    larger[i] = {unit * pairs[i].source, unit * pairs[i].target, pairs[i].weight};
+  }
+  constexpr std::array larger_scales{unit * 0.5, unit * 0.1};
+  const auto fit = robust_fit(pairs, identity, std::array{0.5, 0.1}, 6);
+  const auto larger_fit = robust_fit(larger, identity, larger_scales, 6);
+  ASSERT_TRUE(fit && larger_fit);
+  EXPECT_LT((fit->linear() - larger_fit->linear()).norm(), 1e-12);
+  EXPECT_LT((unit * fit->translation() - larger_fit->translation()).norm(), 1e-9);
+}
+
 TEST(RobustFit, KeepsTheWeightsOfThePairs) {
   Random random(2);
   const Transformation truth = small_motion(random, false);
