@@ -87,7 +87,7 @@ MUTANTS = [
     ("registration/pose_assessment.cpp", "std::pow(10.0, demanded - quality)", "std::pow(10.0, quality - demanded)", "sign of the quality"),
     ("registration/rivals.cpp", "1.0 / (1.0 + pose.chance_odds() + rival_odds)", "1.0 / (1.0 + pose.chance_odds())", "rivals"),
     ("registration/rivals.cpp", "odds < undecided ? 0 : odds", "0", "what a finer scale contradicts"),
-    ("registration/align.cpp", "if (of_image <= result.confidence) return;", "return;", "the mirror image fits better"),
+    ("registration/mirror_image.cpp", "if (of_image <= result.confidence) return;", "return;", "the mirror image fits better"),
     ("registration/align.cpp", "if (is_in_order(source, target)) {", "if (true) {", "which cloud moves"),
     ("registration/exchange.cpp", "centre = target_from_source * centre;", "", "exchanged: centre of the precision"),
     ("registration/exchange.cpp", "scale = 1 / scale;", "", "exchanged: scale"),

@@ -87,8 +87,7 @@ TEST_P(FreeDirections, Corridor) {
 TEST_P(FreeDirections, OfTheExchangedCorridorInTheOtherFrame) {
   const Scene scene = make_scene("corridor", GetParam());
   const Result result = align(scene.pair.target, scene.pair.source);
-  const Eigen::Matrix3d source_from_world =
-      scene.pair.truth.linear().transpose() * scene.target_from_world.linear();
+  const Eigen::Matrix3d source_from_world = scene.pair.truth.linear().transpose() * scene.target_from_world.linear();
   expect_named(result, {translation_along(source_from_world * Vector3d::UnitX())});
 }
 

@@ -61,7 +61,8 @@ TEST(HardScenes, MirroredSourceIsRefused) {
       SCOPED_TRACE(::testing::Message() << scene << " " << seed);
       Pair pair = testing::simulated_pair(scene, 60000, 0, seed);
       for (Eigen::Vector3d& point : pair.source) point.y() *= -1;
-      const Result result = align(Scan{pair.source, Eigen::Vector3d::Zero()}, Scan{pair.target, Eigen::Vector3d::Zero()});
+      const Result result =
+          align(Scan{pair.source, Eigen::Vector3d::Zero()}, Scan{pair.target, Eigen::Vector3d::Zero()});
       EXPECT_FALSE(result.registered) << result.confidence << ": " << result.reason;
     }
   }

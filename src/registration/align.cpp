@@ -9,6 +9,7 @@
 
 #include "features/extraction.hpp"
 #include "registration/exchange.hpp"
+#include "registration/mirror_image.hpp"
 #include "registration/reason.hpp"
 #include "registration/scale_lengths.hpp"
 #include "registration/search.hpp"
@@ -88,49 +89,11 @@ Result without_extent(const TrimmedCloud& source, const TrimmedCloud& target, co
   return result;
 }
 
-// Fills what the features of both may lack, where that is needed.
-using CompleteBoth = std::function<void(StageClock&)>;
-
-SearchOutcome search(ScaleLadder& scales, const std::optional<Transformation>& initial,
-                     const Options& options, StageClock& clock) {
+SearchOutcome search(ScaleLadder& scales, const std::optional<Transformation>& initial, const Options& options,
+                     StageClock& clock) {
   if (initial) return refine_initial(scales, *initial, options, clock);
   if (options.search == Search::direct) return direct_search(scales.frame(0), options, clock);
   return hypotheses_search(scales, options, clock);
-}
-
-// How confident a search for the mirrored source would be. It has no right pose, so this is what wrong poses of this
-// very pair can reach; unless it is the source that is mirrored.
-double confidence_of_mirror_image(const Features& source, const Features& target, const CompleteBoth& complete_both,
-                                  const Options& options, StageClock& clock) {
-  clock.start("mirror image");
-  Features image = mirrored_features(source, options);
-  const CompleteBoth complete_image = [&](StageClock& at) {
-    complete_both(at);
-    complete(options, at, image);
-  };
-  const ProgressCallback keep_asking = [&](const Progress& progress) {
-    clock.report(progress.fraction < 1 ? 0.0 : 0.5);
-    return true;
-  };
-  StageClock own(keep_asking);
-  ScaleLadder scales(image, target, complete_image, options, own);
-  const SearchOutcome outcome = hypotheses_search(scales, options, own);
-  Result result;
-  result.options = options;
-  judge(scales, outcome, result);
-  return result.confidence;
-}
-
-// Where the answer is not beyond doubt, the mirror image has to do worse.
-void compare_with_mirror_image(const Features& source, const Features& target, const CompleteBoth& complete_both,
-                               const Options& options, StageClock& clock, Doubts& doubts, Result& result) {
-  constexpr double beyond_doubt = 0.9;  // mirrored real scans reach 0.86
-  if (!result.registered || result.confidence >= beyond_doubt) return;
-  const double of_image = confidence_of_mirror_image(source, target, complete_both, options, clock);
-  if (of_image <= result.confidence) return;
-  doubts.mirror_image_fits = true;
-  result.confidence /= result.confidence + of_image;
-  result.registered = false;
 }
 
 Result align_in_order(const Features& source, const Features& target, bool is_exchanged,
@@ -157,7 +120,7 @@ Result align_in_order(const Features& source, const Features& target, bool is_ex
   clock.start("verdict");
   Doubts doubts = judge(scales, outcome, result);
   if (!initial && options.search == Search::hypotheses) {
-    compare_with_mirror_image(source, target, complete_both, options, clock, doubts, result);
+    compare_with_mirror_image(source, target, complete_both, clock, doubts, result);
   }
   result.target_from_source = to_world(outcome.target_from_source, source, target);
   result.precision.centre += target.origin;

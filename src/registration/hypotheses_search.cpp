@@ -187,7 +187,8 @@ double contradiction_of(const SearchOutcome& outcome, std::size_t rung, const Sc
   double most = 0;
   for (std::size_t finer = outcome.finest_rung; finer < rung; ++finer) {
     if (outcome.ranked[finer].empty()) continue;
-    most = std::max(most, contradiction_by(outcome.ranked[finer], outcome.ranked[rung].front(), scales.voxel_size(rung)));
+    most =
+        std::max(most, contradiction_by(outcome.ranked[finer], outcome.ranked[rung].front(), scales.voxel_size(rung)));
   }
   return most;
 }
@@ -201,8 +202,7 @@ void choose(const ScaleLadder& scales, const Options& options, SearchOutcome& ou
     const Rival& best = ranked.front();
     const auto rivals = distinct_rivals(ranked, best.target_from_source, scales.voxel_size(rung));
     const double contradiction = contradiction_of(outcome, rung, scales);
-    const double confidence =
-        confidence_of(best.assessment, std::max(odds_of(rivals, best.assessment), contradiction));
+    const double confidence = confidence_of(best.assessment, std::max(odds_of(rivals, best.assessment), contradiction));
     // Without the refinement a pose stays as coarse as its scale: the finest one answers.
     if (confidence < most && options.refinement.enabled) continue;
     most = confidence;
@@ -226,9 +226,9 @@ Transformation refined(ScaleLadder& scales, std::size_t rung, const Transformati
                        const Options& options) {
   FineSurfaces& surfaces = scales.fine_surfaces();
   const auto radii = std::span(fine_radii).subspan(first_fine_radius[rung]);
-  return refine_point_to_plane(surfaces.source, surfaces.target, target_from_source,
-                               {early_fine_points, fine_points, radii, max_last_steps, scales.voxel_size(0),
-                                options.degrees_of_freedom});
+  return refine_point_to_plane(
+      surfaces.source, surfaces.target, target_from_source,
+      {early_fine_points, fine_points, radii, max_last_steps, scales.voxel_size(0), options.degrees_of_freedom});
 }
 
 SearchOutcome hypotheses_search(ScaleLadder& scales, const Options& options, StageClock& clock) {

@@ -75,14 +75,14 @@ void give_reason(const PreparedCloud& target, const Doubts& doubts, Result& resu
                     result.precision.scale);
   }
   if (doubts.is_coarse) {
-    result.reason += fmt::format("; the surfaces meet at voxels of {:.3g} but not at {:.3g}, so the pose is coarse at best",
-                                 result.evidence.voxel_size, result.voxel_size);
+    result.reason +=
+        fmt::format("; the surfaces meet at voxels of {:.3g} but not at {:.3g}, so the pose is coarse at best",
+                    result.evidence.voxel_size, result.voxel_size);
   }
   if (doubts.mirror_image_fits) {
     result.reason += "; the mirrored source fits better: a cloud is left-handed, or the scene is like its mirror image";
   }
-  const bool is_explained =
-      is_free || doubts.is_of_another_scale || doubts.is_coarse || doubts.mirror_image_fits;
+  const bool is_explained = is_free || doubts.is_of_another_scale || doubts.is_coarse || doubts.mirror_image_fits;
   if (result.registered || is_explained) return;
   result.reason += doubts.is_ambiguous ? "; ambiguous: another pose explains the clouds about as well"
                                        : "; too little to tell it from chance";

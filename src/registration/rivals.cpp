@@ -33,8 +33,8 @@ std::vector<Rival> distinct_rivals(std::span<const Rival> rivals, const Transfor
 double odds_of(std::span<const Rival> rivals, const PoseAssessment& against) {
   double odds = 0;
   for (const Rival& rival : rivals) {
-    odds += std::pow(10.0, std::min(rival.assessment.quality, certain_quality) -
-                               std::min(against.quality, certain_quality));
+    odds += std::pow(10.0,
+                     std::min(rival.assessment.quality, certain_quality) - std::min(against.quality, certain_quality));
   }
   return odds;
 }

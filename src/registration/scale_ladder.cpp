@@ -8,7 +8,7 @@
 namespace igsp {
 namespace {
 
-constexpr int stages = 4;                // keypoints and descriptors of both
+constexpr int stages = 4;  // keypoints and descriptors of both
 constexpr std::size_t most_rungs = 4;
 constexpr std::size_t min_voxels = 1200;  // on the rung below: a quarter of them is left
 
@@ -19,8 +19,8 @@ ScaleLadder::Clouds::Clouds(const Features& source_features, const Features& tar
       target(target_features),
       frame(source, target, options.descriptor.radius * target_features.voxel_size, options.threads) {}
 
-ScaleLadder::ScaleLadder(const Features& source, const Features& target, std::function<void(StageClock&)> complete,
-                         const Options& options, StageClock& clock)
+ScaleLadder::ScaleLadder(const Features& source, const Features& target, CompleteBoth complete, const Options& options,
+                         StageClock& clock)
     : complete_(std::move(complete)), options_(options), clock_(clock) {
   rungs_.push_back({source, target, {}});
   while (rungs_.size() < most_rungs) {

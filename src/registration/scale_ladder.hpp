@@ -10,6 +10,9 @@
 
 namespace igsp {
 
+/// Fills what the features of both clouds may lack, where that is needed.
+using CompleteBoth = std::function<void(StageClock&)>;
+
 /// Both clouds at the voxels that were chosen, rung 0, and at voxels twice as large on every further rung: sparse
 /// surfaces close there, and searching costs a quarter. Each is made ready where it is first asked for: most pairs that
 /// overlap are settled above rung 0. Refers to the features.
@@ -17,8 +20,8 @@ class ScaleLadder {
  public:
   /// `complete` fills what extract_features was told to leave out of both, as stages of the clock; what the other rungs
   /// take is one more.
-  ScaleLadder(const Features& source, const Features& target, std::function<void(StageClock&)> complete,
-              const Options& options, StageClock& clock);
+  ScaleLadder(const Features& source, const Features& target, CompleteBoth complete, const Options& options,
+              StageClock& clock);
 
   std::size_t rungs() const { return rungs_.size(); }  ///< at least one; none where too few voxels would be left
   double voxel_size(std::size_t rung) const { return rungs_[rung].target.voxel_size; }
@@ -46,7 +49,7 @@ class ScaleLadder {
 
   void complete_coarser(Coarser& pair);
 
-  std::function<void(StageClock&)> complete_;
+  CompleteBoth complete_;
   const Options& options_;
   StageClock& clock_;
   std::deque<Coarser> coarser_;  // from rung 1 on

@@ -16,8 +16,8 @@ constexpr double confidence_of_what_cannot_be = 0.1;
 
 constexpr double near_quality = 1.5;  // decades below the answer's
 
-// Of the overlap that a coarser rung sees, what the finest one sees at right poses of sparse scan lines is 0.3 and more,
-// where coordinates are rounded to steps of several voxels 0.18, at a pose that is only nearly right 0.12.
+// Of the overlap that a coarser rung sees, what the finest one sees at right poses of sparse scan lines is 0.3 and
+// more, where coordinates are rounded to steps of several voxels 0.18, at a pose that is only nearly right 0.12.
 constexpr double overlap_that_is_left = 0.25;
 // From so much on the surfaces are closed at v, and what the finest rung says against a pose has nothing to do with
 // sparse lines: a corridor with equal doors 0.95, with a confidence of 0.80 at 4 v and 0.02 at v; scan lines to 0.65.
