@@ -4,7 +4,7 @@ jobs := $(shell nproc)
 igsp := build/release/bin/igsp
 demo := build/demo
 
-.PHONY: all build setup demo test deb container docs wheel wheels bench bench-scrambles bench-peers calibrate paper asan tsan fuzz mutants tidy format install clean
+.PHONY: all build setup demo test deb container docs wheel wheels bench bench-scrambles bench-peers aarch64 profile calibrate paper asan tsan fuzz mutants tidy format install clean
 
 all: build
 
@@ -49,6 +49,7 @@ asan tsan:
 	ctest --preset $@ -j $(jobs)
 
 bench: setup
+	@scripts/setup.sh valgrind  # its header, for igsp_profile
 	cmake --preset release -DIGSP_BUILD_BENCHMARKS=ON
 	cmake --build --preset release
 	set -e; for benchmark in build/release/bin/*_benchmark; do $$benchmark; done
@@ -103,6 +104,25 @@ paper:
 	/usr/bin/python3 benchmarks/paper/figures.py --data $(paper_data) --out docs/paper
 	/usr/bin/python3 benchmarks/paper/pictures.py --pairs build/paper --data $(paper_data) --out docs/paper
 	/usr/bin/python3 benchmarks/paper/report.py --data $(paper_data) --out docs/paper/README.md
+
+# The command and the unit tests for aarch64, by Debian's cross compiler, run under qemu-user; the answers on simulated pairs
+# must have the bits of this machine's.
+aarch64_libraries := build/aarch64-libraries
+aarch64: build
+	@scripts/setup.sh g++-aarch64-linux-gnu qemu-user
+	scripts/aarch64_libraries.sh $(aarch64_libraries)
+	cmake --preset aarch64
+	cmake --build --preset aarch64 --target igsp_app igsp_tests
+	qemu-aarch64 -L /usr/aarch64-linux-gnu -E LD_LIBRARY_PATH=$(aarch64_libraries)/usr/lib/aarch64-linux-gnu \
+	  build/aarch64/bin/igsp_tests --gtest_brief=1
+	/usr/bin/python3 scripts/aarch64_check.py $(igsp) build/aarch64/bin/igsp $(aarch64_libraries)
+
+# What docs/profile.md shows: instructions a stage, counted by callgrind. Some minutes of one core.
+profile:
+	@scripts/setup.sh valgrind binutils
+	cmake --preset release -DIGSP_BUILD_BENCHMARKS=ON
+	cmake --build --preset release --target igsp_profile
+	/usr/bin/python3 scripts/instructions.py build/release/bin/igsp_profile docs/profile.md
 
 # Every target for a minute. New inputs land in build/fuzz/inputs; a crash is written beside the Makefile and stops the
 # run.
