@@ -16,8 +16,11 @@ namespace {
 
 constexpr std::size_t slice = 8;  // pairs at once, between two reports
 
-// Of the direction that is seen less of.
-std::size_t in_view(const FreeSpace& space) {
+// Of the direction that is seen less of. Nothing on voxels above 2 v: like rooms contradict nothing there, so it must
+// not make a link that stands alone, or one that was refused, look clear.
+std::size_t in_view(const Result& result) {
+  if (result.evidence.voxel_size > 2 * result.voxel_size) return 0;
+  const FreeSpace& space = result.evidence.free_space;
   return space.source && space.target ? std::min(space.source->in_view, space.target->in_view) : 0;
 }
 
@@ -34,7 +37,7 @@ NetworkLink link_of(const ScanPair& pair, const Result& result) {
   link.mutual_matches = result.evidence.mutual_matches;
   link.agreeing_matches = result.evidence.agreeing_matches;
   link.violation = result.evidence.free_space.violation();
-  link.in_view = in_view(result.evidence.free_space);
+  link.in_view = in_view(result);
   link.precision = result.precision;
   return link;
 }
