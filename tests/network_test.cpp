@@ -7,6 +7,7 @@
 #include <string>
 
 #include "igsp/errors.hpp"
+#include "igsp/align.hpp"
 #include "igsp/evaluation.hpp"
 #include "igsp/simulation.hpp"
 
@@ -66,6 +67,31 @@ TEST(Network, SameScanTwiceOneOfTenPointsAndAnEmptyOneDoNotDisturbTheRest) {
   const PoseError twin = pose_error(network.scans[4].world_from_scan, Transformation::Identity(), {0, 0, 0});
   EXPECT_LT(twin.translation, 0.05);
   EXPECT_LT(twin.rotation_rad, 0.005);
+}
+
+// Nothing contradicts a refused pair on large voxels, and nothing contradicts like rooms there either.
+TEST(Network, ARefusedPairJoinsScansOnlyWhereTheFreeSpaceOfFineVoxelsIsClear) {
+  const auto site = park(3, 2);
+  Options options = fast_options().pair;
+  options.scale.voxel_size = 0.5;
+  std::vector<Features> features;
+  for (const Scan& scan : views(site)) features.push_back(extract_features(scan, options));
+  for (const int rung_size : {1, 2, 4, 8}) {
+    SCOPED_TRACE(rung_size);
+    PairStore store;
+    store.find = [&](std::size_t source, std::size_t target) {
+      Result refused = align(features[source], features[target], options);
+      refused.registered = false;
+      refused.confidence = 0.3;
+      refused.evidence.agreeing_matches = 40;
+      refused.evidence.free_space = {FreeSpaceViolation{500, 0}, FreeSpaceViolation{500, 0}};
+      refused.evidence.voxel_size = rung_size * refused.voxel_size;
+      return std::optional(refused);
+    };
+    const Network network = register_network(
+        features.size(), [&](std::size_t i) { return features[i]; }, fast_options(), {}, store);
+    EXPECT_EQ(network.components.size(), rung_size <= 2 ? 1u : 2u);
+  }
 }
 
 TEST(Network, TwoScansAreOneUnconfirmedLink) {

@@ -105,10 +105,14 @@ std::size_t las_format_length(int point_format) {
   return format_lengths[static_cast<std::size_t>(point_format)];
 }
 
-Eigen::Vector3d LasHeader::position(const char* record) const {
+Eigen::Vector3d LasHeader::local_position(const char* record) const {
   const Eigen::Vector3d stored(las_number<std::int32_t>(record), las_number<std::int32_t>(record + 4),
                                las_number<std::int32_t>(record + 8));
-  return stored.cwiseProduct(scale) + offset;
+  return stored.cwiseProduct(scale);
+}
+
+Eigen::Vector3d LasHeader::position(const char* record) const {
+  return local_position(record) + offset;
 }
 
 bool LasHeader::is_noise(const char* record) const {

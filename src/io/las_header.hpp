@@ -23,6 +23,8 @@ struct LasHeader {
   Eigen::Vector3d scale, offset;  ///< coordinate = offset + scale * stored integer
   std::string extra_bytes;        ///< content of the record that describes them, 192 bytes each; mostly empty
 
+  /// Relative to `offset`.
+  Eigen::Vector3d local_position(const char* record) const;
   /// As the coordinates of every reader: two roundings, no more.
   Eigen::Vector3d position(const char* record) const;
   /// Classified as noise (7 and 18), or withheld: what their maker asks to leave out.

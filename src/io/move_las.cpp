@@ -31,12 +31,6 @@ Eigen::Vector3d turned(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v) {
   return result;
 }
 
-Eigen::Vector3d local_position(const LasHeader& header, const char* record) {
-  const Eigen::Vector3d stored(las_number<std::int32_t>(record), las_number<std::int32_t>(record + 4),
-                               las_number<std::int32_t>(record + 8));
-  return stored.cwiseProduct(header.scale);
-}
-
 /// Rounded to even at a half, as everywhere.
 Eigen::Vector3d stored_position(const MovedGrid& grid, const Eigen::Vector3d& local) {
   const Eigen::Vector3d exact = (local + grid.shift).cwiseQuotient(grid.scale);
@@ -77,7 +71,7 @@ MovedGrid choose_grid(MoveJob& job, InputFile& file, const LasHeader& header) {
   Eigen::Vector3d lower = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), upper = -lower;
   visit_records(file, header, [&](const char* record, std::uint64_t count) {
     for (; count > 0; --count, record += header.record_length) {
-      const Eigen::Vector3d local = turned(grid.turn, local_position(header, record));
+      const Eigen::Vector3d local = turned(grid.turn, header.local_position(record));
       lower = lower.cwiseMin(local);
       upper = upper.cwiseMax(local);
     }
@@ -117,7 +111,7 @@ void write_header(MoveJob& job, const LasHeader& header, const MovedGrid& grid) 
 }
 
 void write_position(MoveJob& job, const LasHeader& header, const MovedGrid& grid, char* record) {
-  const Eigen::Vector3d stored = stored_position(grid, turned(grid.turn, local_position(header, record)));
+  const Eigen::Vector3d stored = stored_position(grid, turned(grid.turn, header.local_position(record)));
   if (!(stored.array().abs() <= largest_stored).all())
     job.file.fail("moved coordinates do not fit into 32 bits: did the file change?");
   for (int axis = 0; axis < 3; ++axis) put_las_number(record + 4 * axis, static_cast<std::int32_t>(stored[axis]));

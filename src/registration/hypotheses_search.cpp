@@ -37,8 +37,9 @@ constexpr double settled_quality = 1.5;  // decades, over other poses ...
 constexpr double settled_odds = 0.1;     // of chance: no wrong pose of 124 came below 0.2
 constexpr double settled_share = 1.25;   // of the agreement expected: right poses have 1.3 to 2, a square room 1.1
 constexpr std::size_t carried = 3;       // from a rung to the next
-// Where no pose comes up to this on the rungs so far, no finer one brings it to a verdict: of 137 pairs registered at
-// rung 0 those of clouds with enough voxels had -0.5 and more.
+// Where no pose comes up to this on the rungs so far, v hardly ever brings one to a verdict: of 114 real pairs that
+// were searched down to v and registered one lies below, of clouds with fewer voxels than these; of 1,000 simulated
+// ones one right object is lost.
 constexpr double hopeless_quality = -2.0;
 constexpr std::size_t enough_voxels = 1500;  // of either cloud, for a pose to show a little of what it is worth
 
@@ -150,7 +151,7 @@ std::vector<Rival> rank(CommonFrame& frame, std::span<const Transformation> cand
         settle(source, target, loop.target_from_source, target_cloud.features.voxel_size, options);
     ranked.push_back({pose, assess_pose(frame, pose)});
   }
-  std::ranges::stable_sort(ranked, std::greater(), [](const Rival& rival) { return rival.assessment.quality; });
+  sort_by_quality(ranked);
   return ranked;
 }
 
@@ -214,8 +215,7 @@ void choose(const ScaleLadder& scales, const Options& options, SearchOutcome& ou
 }
 
 // Whether voxels of 2 v show of every pose at least a little of what it is worth.
-bool can_tell(ScaleLadder& scales, std::size_t rung) {
-  const CommonFrame& frame = scales.frame(rung);
+bool can_tell(std::size_t rung, const CommonFrame& frame) {
   return rung == 1 &&
          std::min(frame.source().features.points.size(), frame.target().features.points.size()) >= enough_voxels;
 }
@@ -242,7 +242,7 @@ SearchOutcome hypotheses_search(ScaleLadder& scales, const Options& options, Sta
     found = outcome.ranked[rung];
     if (!found.empty()) quality = std::max(quality, found.front().assessment.quality);
     outcome.finest_rung = rung;
-    const bool is_hopeless = can_tell(scales, rung) && quality < hopeless_quality;
+    const bool is_hopeless = can_tell(rung, frame) && quality < hopeless_quality;
     if (is_hopeless || (options.refinement.enabled && is_settled(found, scales.voxel_size(rung)))) break;
   }
   choose(scales, options, outcome);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "registration/hypotheses.hpp"
 
@@ -15,6 +16,10 @@ constexpr double certain_quality = 2.5;
 constexpr double undecided = 0.5;  // odds of poses that a finer rung cannot tell from the answer
 
 }  // namespace
+
+void sort_by_quality(std::vector<Rival>& rivals) {
+  std::ranges::stable_sort(rivals, std::greater(), [](const Rival& rival) { return rival.assessment.quality; });
+}
 
 std::vector<Rival> distinct_rivals(std::span<const Rival> rivals, const Transformation& pose, double voxel_size) {
   std::vector<Rival> distinct;

@@ -13,6 +13,8 @@ struct Rival {
   PoseAssessment assessment;
 };
 
+void sort_by_quality(std::vector<Rival>& rivals);  ///< best first
+
 /// Each once, without those that say the same as `pose` or as an earlier one.
 std::vector<Rival> distinct_rivals(std::span<const Rival> rivals, const Transformation& pose, double voxel_size);
 
@@ -20,8 +22,7 @@ std::vector<Rival> distinct_rivals(std::span<const Rival> rivals, const Transfor
 double odds_of(std::span<const Rival> rivals, const PoseAssessment& against);
 
 /// What the ranking of another rung says against `pose`: the odds of the poses there that more than chance speaks for,
-/// against the place of `pose` among them. 0 where they hardly weigh:
-/// the rung of an answer knows best.
+/// against the place of `pose` among them. 0 where they hardly weigh: the rung of an answer knows best.
 double contradiction_by(std::span<const Rival> ranked, const Rival& pose, double voxel_size);
 
 /// That a pose is right: neither chance nor one of its rivals is, [0, 1].

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "registration/pose_assessment.hpp"
 #include "registration/precision.hpp"
@@ -40,10 +39,6 @@ std::vector<FreeDirection> free_directions_at(ScaleLadder& scales, std::size_t r
   std::vector<FreeDirection> free = free_directions(frame.source(), frame.target(), target_from_source);
   if (free.empty() || rung == 0) return free;
   return free_directions_at(scales, std::min<std::size_t>(rung - 1, 1), target_from_source);
-}
-
-void sort_by_quality(std::vector<Rival>& rivals) {
-  std::ranges::stable_sort(rivals, std::greater(), [](const Rival& rival) { return rival.assessment.quality; });
 }
 
 // Other poses as a rung knows them: its own, refined there, or else those of the rung that answered.
