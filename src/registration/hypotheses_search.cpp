@@ -32,6 +32,9 @@ constexpr std::size_t fine_points = 8000;
 constexpr std::size_t max_last_steps = 10;
 constexpr std::size_t enough_agreeing = 15;
 constexpr double enough_agreement = 0.6;
+// Of those with fewer hardly one in fifty came up to a tenth of even odds, and none to even ones: with 10 and 11 at
+// 8 v to 2 v and 13 at v the first did.
+constexpr std::size_t fewest_agreeing = 8;
 constexpr double rival_inliers = 0.5;    // of the winner's
 constexpr double settled_quality = 1.5;  // decades, over other poses ...
 constexpr double settled_odds = 0.1;     // of chance: no wrong pose of 124 came below 0.2
@@ -40,7 +43,7 @@ constexpr std::size_t carried = 3;       // from a rung to the next
 // Where no pose comes up to this on the rungs so far, v hardly ever brings one to a verdict: of 114 real pairs that
 // were searched down to v and registered one lies below, of clouds with fewer voxels than these; of 1,000 simulated
 // ones one right object is lost.
-constexpr double hopeless_quality = -2.0;
+constexpr double hopeless_quality = -2.5;
 constexpr std::size_t enough_voxels = 1500;  // of either cloud, for a pose to show a little of what it is worth
 
 std::vector<Hypothesis> propose(CommonFrame& frame, const Options& options) {
@@ -69,11 +72,13 @@ bool repeats_one_of(std::span<const Posed> others, const Transformation& pose, d
 }
 
 // The first `limit` that repeat neither an earlier one nor what is ranked already: matching again draws proposals
-// together, and six times the same pose would leave no room for the others.
+// together, and six times the same pose would leave no room for the others. Of those that too little agrees with one at
+// most, so that there is an answer.
 std::vector<Rematch> distinct(std::vector<Rematch> sorted, std::span<const Rival> ranked, double voxel_size,
                               int limit) {
   std::vector<Rematch> kept;
   for (Rematch& match : sorted) {
+    if (match.agreeing < fewest_agreeing && !(ranked.empty() && kept.empty())) break;
     if (!repeats_one_of(ranked, match.target_from_source, voxel_size) &&
         !repeats_one_of(std::span<const Rematch>(kept), match.target_from_source, voxel_size)) {
       kept.push_back(std::move(match));

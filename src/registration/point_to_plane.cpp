@@ -59,15 +59,29 @@ struct NormalEquations {
   }
 };
 
+// Of every point of the source its nearest point of the target as last found, or -1.
+using Partners = std::vector<std::int64_t>;
+
+// The nearest point within the radius. The last one bounds the sphere that has to be searched.
+std::int64_t nearest(const Surface& target, const Eigen::Vector3f& p, float radius, std::int64_t* last) {
+  if (!last) return target.grid().nearest(p, radius);
+  if (*last >= 0) {
+    const float distance = 1.0001f * (target.point(*last).cast<float>() - p).norm();
+    radius = std::min(radius, distance);
+    if (distance == radius) return *last = target.grid().nearest_within(p, radius);
+  }
+  return *last = target.grid().nearest(p, radius);
+}
+
 // visit(p, q, n) for points of the source, evenly strided, and their nearest point of the target, where their normals
 // agree: p as moved, n the unit sum of both normals. `scale`: of the source, before the pose.
 template <typename Visit>
 void visit_pairs(Surface& source, Surface& target, const Transformation& pose, double scale, double radius,
-                 std::size_t max_points, const Visit& visit) {
+                 std::size_t max_points, const Visit& visit, Partners* partners = nullptr) {
   const std::size_t stride = std::max<std::size_t>(1, source.size() / max_points);
   for (std::size_t i = 0; i < source.size(); i += stride) {
     const Eigen::Vector3d p = pose * (scale * source.point(i));
-    const std::int64_t j = target.grid().nearest(p.cast<float>(), static_cast<float>(radius));
+    const std::int64_t j = nearest(target, p.cast<float>(), static_cast<float>(radius), partners ? &(*partners)[i] : nullptr);
     if (j < 0) continue;
     const Eigen::Vector3d p_normal = pose.linear() * source.normal(i), &q_normal = target.normal(j);
     const double cosine = p_normal.dot(q_normal);
@@ -77,11 +91,11 @@ void visit_pairs(Surface& source, Surface& target, const Transformation& pose, d
 }
 
 NormalEquations linearise(Surface& source, Surface& target, const Transformation& pose, double scale, double radius,
-                          std::size_t max_points) {
+                          std::size_t max_points, Partners* partners = nullptr) {
   NormalEquations equations{pose.translation(), 0.5 * radius};
   visit_pairs(
       source, target, pose, scale, radius, max_points,
-      [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& n) { equations.add(p, q, n); });
+      [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& n) { equations.add(p, q, n); }, partners);
   equations.move_centre_to_pairs();
   return equations;
 }
@@ -105,8 +119,9 @@ void fix_tilt(NormalEquations& equations) {
   }
 }
 
+// Steps shrink by a third and more each, so what is left is as small: far below what any scanner resolves in a voxel.
 bool is_small(const Vector6& step, double voxel_size) {
-  return step.head<3>().norm() < 1e-5 && step.tail<3>().norm() < 1e-4 * voxel_size;
+  return step.head<3>().norm() < 3e-5 && step.tail<3>().norm() < 3e-4 * voxel_size;
 }
 
 template <typename Solver>
@@ -124,12 +139,13 @@ const Eigen::Vector3d& Surface::normal(std::size_t i) {
 Transformation refine_point_to_plane(Surface& source, Surface& target, const Transformation& initial,
                                      const PointToPlaneOptions& options) {
   Transformation pose = initial;
+  Partners partners(source.size(), -1);
   const std::size_t steps = options.radii.size() + options.max_last_steps;
   for (std::size_t k = 0; k < steps; ++k) {
     const bool is_early = k + 1 < options.radii.size();
     const double radius = options.radii[is_early ? k : options.radii.size() - 1] * options.voxel_size;
     NormalEquations equations =
-        linearise(source, target, pose, 1, radius, is_early ? options.early_points : options.max_points);
+        linearise(source, target, pose, 1, radius, is_early ? options.early_points : options.max_points, &partners);
     if (equations.pairs < min_pairs) break;
     if (options.degrees_of_freedom == 4) fix_tilt(equations);
     const Eigen::LDLT<Matrix6> solver(equations.information.topLeftCorner<6, 6>());
