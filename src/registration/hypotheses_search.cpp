@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 
+#include "core/parallel.hpp"
 #include "registration/hypotheses.hpp"
 #include "registration/igsp_loop.hpp"
 #include "registration/point_to_plane.hpp"
@@ -88,18 +89,45 @@ std::vector<Rematch> distinct(std::vector<Rematch> sorted, std::span<const Rival
   return kept;
 }
 
+// result[i] = look(poses[i]) on several threads, the rotations being described before.
+template <typename Result, typename Look>
+std::vector<Result> look_into_each(CommonFrame& frame, std::span<const Transformation> poses, const Look& look) {
+  frame.describe(poses);
+  std::vector<Result> results(poses.size());
+  parallel_blocks(poses.size(), frame.threads(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) results[i] = look(poses[i]);
+  });
+  return results;
+}
+
+// Of those, every one has one thread.
+Options in_one_thread(Options options) {
+  options.threads = 1;
+  return options;
+}
+
 // Matches every proposal again in its common frame, those with most agreeing matches first. After a clear winner only
-// proposals that as many candidates support are looked into: they would be the other poses of a symmetric scene.
+// proposals that as many candidates support are looked into: they would be the other poses of a symmetric scene. In
+// batches that grow, for the winner is mostly among the first.
 std::vector<Rematch> match_again(CommonFrame& frame, std::span<const Hypothesis> hypotheses, const Options& options,
                                  const std::function<void(double)>& tick) {
   std::vector<Rematch> matched;
   std::size_t winner_inliers = 0;
-  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-    tick(static_cast<double>(i) / static_cast<double>(hypotheses.size()));
-    const bool could_rival = static_cast<double>(hypotheses[i].inliers) >= rival_inliers * winner_inliers;
-    if (winner_inliers > 0 && !could_rival) continue;
-    matched.push_back(rematch(frame, hypotheses[i].target_from_source, options.degrees_of_freedom));
-    if (is_clear(matched.back())) winner_inliers = std::max(winner_inliers, hypotheses[i].inliers);
+  for (std::size_t begin = 0, size = 2; begin < hypotheses.size(); begin += size, size *= 2) {
+    tick(static_cast<double>(begin) / static_cast<double>(hypotheses.size()));
+    std::vector<Transformation> batch;
+    std::vector<std::size_t> inliers;
+    for (const Hypothesis& hypothesis : hypotheses.subspan(begin, std::min(size, hypotheses.size() - begin))) {
+      if (static_cast<double>(hypothesis.inliers) < rival_inliers * static_cast<double>(winner_inliers)) continue;
+      batch.push_back(hypothesis.target_from_source);
+      inliers.push_back(hypothesis.inliers);
+    }
+    std::vector<Rematch> of_batch = look_into_each<Rematch>(
+        frame, batch, [&](const Transformation& pose) { return rematch(frame, pose, options.degrees_of_freedom, 1); });
+    for (std::size_t i = 0; i < of_batch.size(); ++i) {
+      if (is_clear(of_batch[i])) winner_inliers = std::max(winner_inliers, inliers[i]);
+      matched.push_back(std::move(of_batch[i]));
+    }
   }
   std::ranges::stable_sort(matched, std::greater(), &Rematch::agreeing);
   return matched;
@@ -114,10 +142,11 @@ LoopOutcome hybrid_loop(CommonFrame& frame, const Transformation& initial, int i
 }
 
 // A short refinement on the voxel centroids, before hypotheses are compared.
-Transformation settle(Surface& source, Surface& target, const Transformation& initial, double voxel_size,
+Transformation settle(const Surface& source, const Surface& target, const Transformation& initial, double voxel_size,
                       const Options& options) {
-  return refine_point_to_plane(source, target, initial,
-                               {coarse_points, coarse_points, coarse_radii, 0, voxel_size, options.degrees_of_freedom});
+  return refine_point_to_plane(
+      source, target, initial,
+      {coarse_points, coarse_points, coarse_radii, 0, voxel_size, options.degrees_of_freedom, 1});
 }
 
 void refine(ScaleLadder& scales, const Options& options, StageClock& clock, SearchOutcome& outcome) {
@@ -143,19 +172,19 @@ void finish(ScaleLadder& scales, const Options& options, StageClock& clock, Sear
 
 // A few iterations of the loop and a short refinement for each, then the question that the verdict asks as well: how
 // well do the clouds agree at this pose? Best first.
-std::vector<Rival> rank(CommonFrame& frame, std::span<const Transformation> candidates, const Options& options,
-                        StageClock& clock) {
+std::vector<Rival> rank(CommonFrame& frame, std::span<const Transformation> candidates, const Options& options) {
   const PreparedCloud &source_cloud = frame.source(), &target_cloud = frame.target();
-  Surface source(source_cloud.features.points, source_cloud.grid, source_cloud.features.normals);
-  Surface target(target_cloud.features.points, target_cloud.grid, target_cloud.features.normals);
-  std::vector<Rival> ranked;
-  for (const Transformation& candidate : candidates) {
-    clock.report(static_cast<double>(ranked.size()) / static_cast<double>(candidates.size()));
-    const LoopOutcome loop = hybrid_loop(frame, candidate, first_iterations, options);
-    const Transformation pose =
-        settle(source, target, loop.target_from_source, target_cloud.features.voxel_size, options);
-    ranked.push_back({pose, assess_pose(frame, pose)});
-  }
+  const Surface source(source_cloud.features.points, source_cloud.grid, source_cloud.features.normals);
+  const Surface target(target_cloud.features.points, target_cloud.grid, target_cloud.features.normals);
+  const Options alone = in_one_thread(options);
+  const std::vector<Transformation> poses =
+      look_into_each<Transformation>(frame, candidates, [&](const Transformation& candidate) {
+        const LoopOutcome loop = hybrid_loop(frame, candidate, first_iterations, alone);
+        return settle(source, target, loop.target_from_source, target_cloud.features.voxel_size, alone);
+      });
+  std::vector<Rival> ranked = look_into_each<Rival>(frame, poses, [&](const Transformation& pose) {
+    return Rival{pose, assess_pose(frame, pose, 1)};
+  });
   sort_by_quality(ranked);
   return ranked;
 }
@@ -185,7 +214,7 @@ std::vector<Rival> search_at(CommonFrame& scale, std::span<const Rival> found, c
   std::vector<Transformation> candidates;
   for (const Rival& pose : found) candidates.push_back(pose.target_from_source);
   for (const Rematch& pose : screened) candidates.push_back(pose.target_from_source);
-  return rank(scale, candidates, options, clock);
+  return rank(scale, candidates, options);
 }
 
 // What the finer rungs say against the best pose of this one: they see what it cannot, not the other way round.
@@ -231,9 +260,9 @@ Transformation refined(ScaleLadder& scales, std::size_t rung, const Transformati
                        const Options& options) {
   FineSurfaces& surfaces = scales.fine_surfaces();
   const auto radii = std::span(fine_radii).subspan(first_fine_radius[rung]);
-  return refine_point_to_plane(
-      surfaces.source, surfaces.target, target_from_source,
-      {early_fine_points, fine_points, radii, max_last_steps, scales.voxel_size(0), options.degrees_of_freedom});
+  return refine_point_to_plane(surfaces.source, surfaces.target, target_from_source,
+                               {early_fine_points, fine_points, radii, max_last_steps, scales.voxel_size(0),
+                                options.degrees_of_freedom, options.threads});
 }
 
 SearchOutcome hypotheses_search(ScaleLadder& scales, const Options& options, StageClock& clock) {
