@@ -7,6 +7,7 @@ usage: threads.py IGSP SOURCE TARGET [--threads 2] [--rounds 5] [-- options of i
 import argparse
 import json
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -25,15 +26,16 @@ def main():
     parser.add_argument("target")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("options", nargs="*")
-    settings = parser.parse_args()
+    arguments = sys.argv[1:]
+    end = arguments.index("--") if "--" in arguments else len(arguments)
+    settings, options = parser.parse_args(arguments[:end]), arguments[end + 1:]
     best = {}
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "run.json"
         for _ in range(settings.rounds):
             for threads in (1, settings.threads):
                 seconds = seconds_of([settings.igsp, "align", settings.source, settings.target, "--quiet", "--report",
-                                      report, "--threads", str(threads), *settings.options])
+                                      report, "--threads", str(threads), *options])
                 if threads not in best or seconds < best[threads][0]:
                     best[threads] = seconds, json.loads(report.read_text())
     (one, of_one), (several, of_several) = best[1], best[settings.threads]
