@@ -65,9 +65,9 @@ class RelayedProgress {
   bool is_stopped_ = false, is_ended_ = false;
 };
 
-/// first(progress) on the calling thread and second(progress) on another one at the same time; one after the other where
-/// there is one thread (0: as many as processors). `progress` is called on the calling thread alone; it hears of the
-/// second where the first has ended before. What either throws is thrown, of two the first's.
+/// first(progress) on the calling thread and second(progress) on another one at the same time; one after the other
+/// where there is one thread (0: as many as processors). `progress` is called on the calling thread alone; it hears of
+/// the second where the first has ended before. What either throws is thrown, of two the first's.
 template <typename First, typename Second>
 void concurrently(int threads, const ProgressCallback& progress, const First& first, const Second& second) {
   if (concurrency(threads) == 1) {

@@ -16,7 +16,8 @@ void do_nothing(const ProgressCallback&) {}
 TEST(Concurrently, RunsBothForEveryNumberOfThreads) {
   for (const int threads : {0, 1, 2, 3}) {
     int first = 0, second = 0;
-    concurrently(threads, {}, [&](const ProgressCallback&) { ++first; }, [&](const ProgressCallback&) { ++second; });
+    concurrently(
+        threads, {}, [&](const ProgressCallback&) { ++first; }, [&](const ProgressCallback&) { ++second; });
     EXPECT_EQ(first, 1);
     EXPECT_EQ(second, 1);
   }

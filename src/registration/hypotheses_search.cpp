@@ -113,7 +113,7 @@ std::vector<Rematch> match_again(CommonFrame& frame, std::span<const Hypothesis>
                                  const std::function<void(double)>& tick) {
   std::vector<Rematch> matched;
   std::size_t winner_inliers = 0;
-  for (std::size_t begin = 0, size = 2; begin < hypotheses.size(); begin += size, size *= 2) {
+  for (std::size_t begin = 0, size = 1; begin < hypotheses.size(); begin += size, size *= 2) {
     tick(static_cast<double>(begin) / static_cast<double>(hypotheses.size()));
     std::vector<Transformation> batch;
     std::vector<std::size_t> inliers;

@@ -52,7 +52,9 @@ PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from
   parallel_pair(
       threads,
       [&] { assessment.source_on_target = surface_contact(frame.source(), frame.target(), target_from_source); },
-      [&] { assessment.target_on_source = surface_contact(frame.target(), frame.source(), target_from_source.inverse()); });
+      [&] {
+        assessment.target_on_source = surface_contact(frame.target(), frame.source(), target_from_source.inverse());
+      });
   const auto matches = mutual_matches(frame, target_from_source.linear(), threads);
   assessment.mutual_matches = matches.size();
   assessment.agreeing_matches =

@@ -98,9 +98,9 @@ FineSurfaces::FineSurfaces(const Features& source_features, const Features& targ
       threads(number_of_threads) {}
 
 Precision precision_at(const FineSurfaces& surfaces, const Transformation& target_from_source, int degrees_of_freedom) {
-  const Linearisation at_pose = linearise_at(surfaces.source, surfaces.target, target_from_source,
-                                             fine_search_radius * surfaces.voxel_size, max_fine_points,
-                                             surfaces.threads);
+  const Linearisation at_pose =
+      linearise_at(surfaces.source, surfaces.target, target_from_source, fine_search_radius * surfaces.voxel_size,
+                   max_fine_points, surfaces.threads);
   Precision precision;
   precision.centre = at_pose.centre;
   precision.inlier_rmse = std::sqrt(at_pose.residual_variance);
@@ -110,9 +110,9 @@ Precision precision_at(const FineSurfaces& surfaces, const Transformation& targe
   if (solver.info() == Eigen::Success && solver.isPositive() && solver.rcond() > 1e-15) {
     precision.covariance = solver.solve(Matrix6::Identity());
   }
-  const ScaleFit scale = fit_scale(surfaces.source, surfaces.target, target_from_source,
-                                   {0, max_scale_points, scale_radii, 0, surfaces.voxel_size, degrees_of_freedom,
-                                    surfaces.threads});
+  const ScaleFit scale =
+      fit_scale(surfaces.source, surfaces.target, target_from_source,
+                {0, max_scale_points, scale_radii, 0, surfaces.voxel_size, degrees_of_freedom, surfaces.threads});
   if (std::isfinite(scale.sigma)) {
     precision.scale = scale.factor;
     precision.scale_sigma = scale.sigma;

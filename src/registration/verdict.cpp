@@ -37,7 +37,8 @@ struct Judgement {
 std::vector<FreeDirection> free_directions_at(ScaleLadder& scales, std::size_t rung,
                                               const Transformation& target_from_source) {
   const CommonFrame& frame = scales.frame(rung);
-  std::vector<FreeDirection> free = free_directions(frame.source(), frame.target(), target_from_source, scales.threads());
+  std::vector<FreeDirection> free =
+      free_directions(frame.source(), frame.target(), target_from_source, scales.threads());
   if (free.empty() || rung == 0) return free;
   return free_directions_at(scales, std::min<std::size_t>(rung - 1, 1), target_from_source);
 }
@@ -48,7 +49,8 @@ std::vector<Rival> rivals_at(ScaleLadder& scales, std::size_t rung, const Search
   const double v = scales.voxel_size(rung);
   if (!outcome.ranked[rung].empty()) return distinct_rivals(outcome.ranked[rung], outcome.target_from_source, v);
   std::vector<Rival> rivals = distinct_rivals(outcome.ranked[outcome.rung], outcome.target_from_source, v);
-  for (Rival& rival : rivals) rival.assessment = assess_pose(scales.frame(rung), rival.target_from_source, scales.threads());
+  for (Rival& rival : rivals)
+    rival.assessment = assess_pose(scales.frame(rung), rival.target_from_source, scales.threads());
   sort_by_quality(rivals);
   return rivals;
 }
