@@ -1,0 +1,53 @@
+#include "registration/screening.hpp"
+
+#include <gtest/gtest.h>
+
+#include "registration/frame_testing.hpp"
+
+namespace igsp {
+namespace {
+
+using testing::Random;
+using testing::Scene;
+
+constexpr std::size_t proposed = 24;
+const auto silent = [](double) {};
+
+/// The right pose at `place` among wrong ones.
+std::vector<Hypothesis> proposals(const Scene& scene, std::size_t place, std::size_t inliers_of_the_right,
+                                  std::size_t inliers_of_others) {
+  Random random(5);
+  std::vector<Hypothesis> hypotheses;
+  for (std::size_t i = 0; i < proposed; ++i) {
+    const bool is_right = i == place;
+    hypotheses.push_back(
+        {is_right ? scene.truth : random.motion(1), is_right ? inliers_of_the_right : inliers_of_others});
+  }
+  return hypotheses;
+}
+
+bool is_right(const Scene& scene, const Rematch& match) {
+  return (match.target_from_source.linear() - scene.truth.linear()).norm() < 0.05;
+}
+
+TEST(Screening, AFirstLookKeepsTheRightOneOfMany) {
+  const Scene scene(3);
+  ASSERT_GE(scene.source.keypoints.size(), 80u) << "or there is nothing to leave out";
+  for (const std::size_t place : {3, 12, 23}) {
+    CommonFrame frame = scene.frame();
+    const std::vector<Rematch> screened = screen(frame, proposals(scene, place, 3, 10), Options(), silent);
+    EXPECT_TRUE(is_right(scene, screened.front())) << "proposal " << place;
+    EXPECT_EQ(screened.size(), 3u + 8u) << "three before the look, and its best eight";
+    EXPECT_TRUE(std::ranges::is_sorted(screened, std::greater(), &Rematch::agreeing));
+  }
+}
+
+TEST(Screening, AClearWinnerSparesAllThatCannotBeItsRivals) {
+  const Scene scene(4);
+  CommonFrame frame = scene.frame(), other = scene.frame();
+  EXPECT_EQ(screen(frame, proposals(scene, 0, 20, 9), Options(), silent).size(), 1u);
+  EXPECT_EQ(screen(other, proposals(scene, 0, 20, 10), Options(), silent).size(), proposed);
+}
+
+}  // namespace
+}  // namespace igsp
