@@ -67,21 +67,7 @@ IGSP_MULTIVERSION Nearest nearest_in_row(const std::uint16_t* row, std::size_t i
 
 CommonFrame::CommonFrame(const PreparedCloud& source, const PreparedCloud& target, double descriptor_radius,
                          int threads)
-    : source_(source),
-      target_(target),
-      descriptor_radius_(descriptor_radius),
-      threads_(threads),
-      source_keypoints_(source.keypoints) {}
-
-CommonFrame CommonFrame::thinned(std::size_t stride) {
-  CommonFrame thin(source_, target_, descriptor_radius_, threads_);
-  thin.source_keypoints_.clear();
-  for (std::size_t i = 0; i < source_keypoints_.size(); i += stride) {
-    thin.source_keypoints_.push_back(source_keypoints_[i]);
-  }
-  thin.target_descriptors_ = target_descriptors();
-  return thin;
-}
+    : source_(source), target_(target), descriptor_radius_(descriptor_radius), threads_(threads) {}
 
 void CommonFrame::describe(std::span<const Transformation> target_from_source) {
   target_descriptors();
@@ -100,7 +86,7 @@ const std::vector<Descriptor>& CommonFrame::source_descriptors(const Eigen::Matr
   for (const Cached& cached : cache_) {
     if (rotation_error_rad(cached.rotation, target_from_source) < reuse_angle_rad) return cached.descriptors;
   }
-  if (!source_supports_) source_supports_ = gather_supports(source_.grid, source_keypoints_, descriptor_radius_);
+  if (!source_supports_) source_supports_ = gather_supports(source_.grid, source_.keypoints, descriptor_radius_);
   // The target's axes, seen in the source: the columns of R^T.
   cache_.push_back({target_from_source, describe_in_frame(*source_supports_, target_from_source.transpose(),
                                                           descriptor_radius_, threads_)});
@@ -118,7 +104,7 @@ std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d&
   std::vector<PointPair> matches;
   for (std::size_t i = 0; i < m; ++i) {
     const Nearest j = index_of(of_source[i]);
-    if (index_of(of_target[j]) == i) matches.push_back({frame.source_keypoints()[i], frame.target().keypoints[j]});
+    if (index_of(of_target[j]) == i) matches.push_back({frame.source().keypoints[i], frame.target().keypoints[j]});
   }
   return matches;
 }

@@ -19,16 +19,12 @@ class CommonFrame {
  public:
   CommonFrame(const PreparedCloud& source, const PreparedCloud& target, double descriptor_radius, int threads);
 
-  /// The same for a first look: with every stride-th keypoint of the source.
-  CommonFrame thinned(std::size_t stride);
-
   /// What rotations will be asked for.
   void describe(std::span<const Transformation> target_from_source);
   const std::vector<Descriptor>& target_descriptors();
   const std::vector<Descriptor>& source_descriptors(const Eigen::Matrix3d& target_from_source);
 
   const PreparedCloud& source() const { return source_; }
-  const Points& source_keypoints() const { return source_keypoints_; }  ///< that are described
   const PreparedCloud& target() const { return target_; }
   double descriptor_radius() const { return descriptor_radius_; }
   int threads() const { return threads_; }
@@ -42,7 +38,6 @@ class CommonFrame {
   const PreparedCloud& target_;
   double descriptor_radius_;
   int threads_;
-  Points source_keypoints_;
   std::optional<SupportTable> source_supports_;
   std::optional<std::vector<Descriptor>> target_descriptors_;
   std::deque<Cached> cache_;

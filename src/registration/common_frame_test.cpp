@@ -79,24 +79,6 @@ TEST(MutualMatches, AreNearestToEachOther) {
   }
 }
 
-TEST(CommonFrame, AFirstLookDescribesEverySoManyKeypointsOfTheSource) {
-  const Scene scene(3);
-  CommonFrame frame = scene.frame();
-  const Eigen::Matrix3d rotation = scene.truth.linear();
-  CommonFrame thin = frame.thinned(3);
-  EXPECT_EQ(thin.target_descriptors(), frame.target_descriptors());
-  const auto &all = frame.source_descriptors(rotation), &some = thin.source_descriptors(rotation);
-  ASSERT_EQ(some.size(), (all.size() + 2) / 3);
-  for (std::size_t i = 0; i < some.size(); ++i) {
-    EXPECT_EQ(some[i], all[3 * i]);
-    EXPECT_EQ(thin.source_keypoints()[i], frame.source_keypoints()[3 * i]);
-  }
-  // Fewer rivals, so the right matches of the part are at least those of all.
-  Transformation elsewhere = scene.truth;
-  elsewhere.linear() = elsewhere.linear() * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitX());
-  EXPECT_GT(rematch(thin, scene.truth, 6, 1).agreeing, 2 * rematch(thin, elsewhere, 6, 1).agreeing);
-}
-
 TEST(Rematch, FindsThePoseFromARotationThatIsNearlyRight) {
   for (std::uint64_t seed = 4; seed < 7; ++seed) {
     const Scene scene(seed);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "registration/common_frame.hpp"
@@ -9,9 +10,9 @@
 namespace igsp {
 
 /// Matches proposals again in their common frame, those with most agreeing matches first. A clear winner spares the
-/// others, except those with half of its inliers, which would be the other poses of a symmetric scene; without one
-/// among the first, a look with a part of the keypoints spares most of the others. `tick`: the share that is done.
-std::vector<Rematch> screen(CommonFrame& frame, std::vector<Hypothesis> hypotheses, const Options& options,
+/// others, except those with half of its inliers, which would be the other poses of a symmetric scene. `tick`: the
+/// share that is done.
+std::vector<Rematch> screen(CommonFrame& frame, std::span<const Hypothesis> hypotheses, const Options& options,
                             const std::function<void(double)>& tick);
 
 }  // namespace igsp
