@@ -3,9 +3,9 @@
 Works on a copy of the sources in the folder of --build; a mutant that no test notices is a survivor, and one whose text is not in
 the source any more is stale: both end with exit code 1. The list is scripts/mutant_list.py. The tests that lie beside the
 broken source are asked first, then the other unit tests, then the end-to-end tests. What each mutant was noticed by is kept
-in --record; --unrecorded leaves out what stands there.
+in docs/data/mutants.csv; --unrecorded leaves out what stands there.
 
-usage: mutants.py [--build build/mutants] [--only REGEX] [--jobs N] [--every N] [--quick] [--unrecorded] [--list]
+usage: mutants.py [--build build/mutants] [--only REGEX] [--jobs N] [--every N] [--quick] [--tests FILTER] [--unrecorded] [--list]
 """
 import argparse
 import csv
@@ -67,7 +67,8 @@ def record(noticed):
 
 
 class Workshop:
-    def __init__(self, build, jobs, programs):
+    def __init__(self, build, jobs, programs, tests):
+        self.tests = tests
         # Laid out as the project itself, so that the compiler cache knows most of the objects.
         self.source, self.build, self.jobs, self.programs = build, build / "build/release", jobs, programs
         copy_sources(self.source)
@@ -102,8 +103,8 @@ class Workshop:
             for program in self.programs:
                 if self.make(program).returncode:
                     return "does not build"
-                rounds = [("*", None)]
-                if program == "igsp_tests" and near:
+                rounds = [(self.tests, None)]
+                if self.tests == "*" and program == "igsp_tests" and near:
                     rounds = [(near, SECONDS_BESIDE), (f"-{near}", None)]
                 for tests, limit in rounds:
                     if test := self.noticed_by(program, tests, limit):
@@ -120,6 +121,8 @@ def main():
     parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--jobs", default="2")
     parser.add_argument("--quick", action="store_true", help="unit tests only: a survivor may be noticed by the others")
+    parser.add_argument("--tests", default="*", metavar="FILTER",
+                        help="those alone that are asked (--gtest_filter): a survivor may be noticed by the others")
     parser.add_argument("--unrecorded", action="store_true", help="those alone that the record does not hold")
     parser.add_argument("--list", action="store_true")
     arguments = parser.parse_args()
@@ -134,12 +137,13 @@ def main():
             print(f"{name:<40} {what:<50} {known}")
         print(f"{len(chosen)} mutants")
         return any((ROOT / "src" / m[0]).read_text().count(m[1]) != 1 for m in chosen)
-    workshop = Workshop(arguments.build, arguments.jobs, list(PROGRAMS)[:1] if arguments.quick else list(PROGRAMS))
+    programs = list(PROGRAMS)[:1] if arguments.quick else list(PROGRAMS)
+    workshop = Workshop(arguments.build, arguments.jobs, programs, arguments.tests)
     for program in workshop.programs:
         built = workshop.make(program)
         if built.returncode:
             sys.exit(built.stdout)
-        if test := workshop.noticed_by(program):
+        if test := workshop.noticed_by(program, arguments.tests):
             sys.exit(f"the unbroken sources do not pass {test}")
     bad = 0
     for mutant in chosen:

@@ -1,0 +1,151 @@
+#include "registration/point_to_plane.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/core_testing.hpp"
+#include "igsp/evaluation.hpp"
+
+namespace igsp {
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using testing::BumpySurface;
+using testing::Random;
+
+constexpr double voxel_size = 0.1;
+
+Surface surface_of(const Points& points) {
+  return Surface(points, PointGrid(points, voxel_size), 3 * voxel_size);
+}
+
+// Places so far apart that each has one partner, and their normals.
+struct Places {
+  Points p, q, p_normals, q_normals;
+};
+
+Places random_places(Random& random, std::size_t count) {
+  Places places;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d p(static_cast<double>(i % 8), static_cast<double>(i / 8), random.uniform(0, 3));
+    const Eigen::Vector3d normal = random.direction();
+    places.p.push_back(p);
+    places.q.push_back(p + random.in_cube(0.1));
+    places.p_normals.push_back(normal);
+    places.q_normals.push_back((normal + random.in_cube(0.2)).normalized() * (i % 2 ? 1 : -1));
+  }
+  return places;
+}
+
+TEST(PointToPlane, NormalEquationsAreThoseOfTheDefinition) {
+  Random random(1);
+  const Places places = random_places(random, 64);
+  Surface source(places.p, PointGrid(places.p, 1), places.p_normals);
+  Surface target(places.q, PointGrid(places.q, 1), places.q_normals);
+  const double radius = 0.3, scale = radius / 2;
+  const Linearisation at_pose = linearise_at(source, target, Transformation::Identity(), radius, 1000);
+
+  std::vector<double> residuals, weights;
+  Points normals;
+  double weight_sum = 0, squares = 0;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < places.p.size(); ++i) {
+    const double sign = places.p_normals[i].dot(places.q_normals[i]) < 0 ? -1 : 1;
+    normals.push_back((places.p_normals[i] + sign * places.q_normals[i]).normalized());
+    residuals.push_back(normals[i].dot(places.p[i] - places.q[i]));
+    weights.push_back(std::pow(1 + std::pow(residuals[i] / scale, 2), -2));
+    weight_sum += weights[i];
+    squares += weights[i] * residuals[i] * residuals[i];
+    centre += weights[i] * places.p[i];
+  }
+  centre /= weight_sum;
+  Matrix6 hessian = Matrix6::Zero();
+  Vector6 gradient = Vector6::Zero();
+  for (std::size_t i = 0; i < places.p.size(); ++i) {
+    // A rotation by r moves p by r x (p - c), along n by r . ((p - c) x n).
+    Vector6 jacobian;
+    jacobian << (places.p[i] - centre).cross(normals[i]), normals[i];
+    hessian += weights[i] * jacobian * jacobian.transpose();
+    gradient += weights[i] * residuals[i] * jacobian;
+  }
+  EXPECT_EQ(at_pose.pairs, places.p.size());
+  EXPECT_LT((at_pose.centre - centre).norm(), 1e-12);
+  EXPECT_LT((at_pose.hessian - hessian).norm(), 1e-9 * hessian.norm());
+  EXPECT_LT((at_pose.gradient - gradient).norm(), 1e-9);
+  EXPECT_NEAR(at_pose.residual_variance, squares / weight_sum, 1e-12);
+}
+
+constexpr std::array<double, 6> radii{3, 3, 2, 2, 1, 1};
+
+PointToPlaneOptions options_of(int degrees_of_freedom) {
+  return {.early_points = 2000,
+          .max_points = 2000,
+          .radii = radii,
+          .max_last_steps = 20,
+          .voxel_size = voxel_size,
+          .degrees_of_freedom = degrees_of_freedom};
+}
+
+// The source is the target itself, moved away, so that the truth is the only minimum.
+struct Scene {
+  Points target_points, source_points;
+  Transformation truth;
+
+  Scene(std::uint64_t seed, const Transformation& target_from_source) : truth(target_from_source) {
+    Random random(seed);
+    target_points = BumpySurface(random).sample(random, 2000, 1);
+    source_points = testing::moved(truth.inverse(), target_points);
+  }
+  PoseError error_of(const Transformation& found) const { return pose_error(found, truth, source_points.front()); }
+};
+
+TEST(PointToPlane, FindsTheTruthFromNearby) {
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    Random random(seed + 100);
+    const Scene scene(seed, random.motion(5));
+    const Transformation off(Eigen::Translation3d(random.in_cube(0.05)) * Eigen::AngleAxisd(0.03, random.direction()));
+    Surface source = surface_of(scene.source_points), target = surface_of(scene.target_points);
+    const PoseError error = scene.error_of(refine_point_to_plane(source, target, off * scene.truth, options_of(6)));
+    EXPECT_LT(error.rotation_rad, 1e-6) << "seed " << seed;
+    EXPECT_LT(error.centroid_displacement, 1e-6) << "seed " << seed;
+  }
+}
+
+TEST(PointToPlane, LevelledFindsTheYawAndTouchesNoTilt) {
+  const Scene scene(7, Transformation(Eigen::Translation3d(3, -2, 1) * Eigen::AngleAxisd(1, Eigen::Vector3d::UnitZ())));
+  const Transformation off(Eigen::Translation3d(0.04, 0.02, -0.03) * Eigen::AngleAxisd(0.03, Eigen::Vector3d::UnitZ()));
+  Surface source = surface_of(scene.source_points), target = surface_of(scene.target_points);
+  const Transformation found = refine_point_to_plane(source, target, off * scene.truth, options_of(4));
+  EXPECT_LT(scene.error_of(found).rotation_rad, 1e-6);
+  EXPECT_LT(scene.error_of(found).centroid_displacement, 1e-6);
+
+  const Transformation tilted = Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitX()) * scene.truth;
+  const Transformation kept = refine_point_to_plane(source, target, tilted, options_of(4));
+  EXPECT_LT((kept.linear().row(2) - tilted.linear().row(2)).norm(), 1e-12) << "what a yaw leaves alone";
+}
+
+// Growth about any place but the centre of the pairs would move a cloud that stands far from its origin away.
+TEST(PointToPlane, FindsTheScaleOfACloudFarFromItsOrigin) {
+  Random random(9);
+  const Transformation truth(Eigen::Translation3d(-40, 25, 30) * Eigen::AngleAxisd(0.4, random.direction()));
+  const Scene scene(8, truth);
+  const double factor = 1.04;
+  Points small = scene.source_points;
+  for (Eigen::Vector3d& point : small) point /= factor;
+  // At this start the middle of the small cloud lies where it belongs.
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : small) middle += point / static_cast<double>(small.size());
+  Transformation start = truth;
+  start.translation() += truth.linear() * (factor * middle - middle);
+  Surface source = surface_of(small), target = surface_of(scene.target_points);
+  const ScaleFit fit = fit_scale(source, target, start, options_of(6));
+  EXPECT_NEAR(fit.factor, factor, 1e-4);
+  EXPECT_LT((fit.target_from_source * (fit.factor * small[0]) - scene.target_points[0]).norm(), 1e-2 * voxel_size);
+  EXPECT_LT(fit.sigma, 1e-3);
+}
+
+}  // namespace
+}  // namespace igsp
