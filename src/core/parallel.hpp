@@ -3,18 +3,33 @@
 #ifdef __SANITIZE_THREAD__
 #include <exception>
 #include <mutex>
-#include <thread>
 #include <vector>
 #else
-#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #endif
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
+#include <thread>
 
 namespace igsp {
+
+/// How many threads work for an option of so many (0: as many as processors).
+inline std::size_t concurrency(int threads) {
+  static const std::size_t processors = std::max(1u, std::thread::hardware_concurrency());  // asks the file system
+  return threads == 0 ? processors : std::min<std::size_t>(threads, processors);
+}
+
+#ifndef __SANITIZE_THREAD__
+/// For so many threads, of the calling one alone. Kept, for its workers look for more work a while before they sleep,
+/// and to be woken takes them longer than many a loop here. Never more threads than processors: TBB would warn.
+inline tbb::task_arena& arena_of(int threads) {
+  thread_local std::map<int, tbb::task_arena> arenas;
+  return arenas.try_emplace(threads, threads).first->second;
+}
+#endif
 
 /// Calls body(begin, end) on blocks of [0, size). Every index must write only its own output, so that the result does
 /// not depend on the number of threads (0: all processors). One thread runs in the caller without a task arena.
@@ -44,18 +59,24 @@ void parallel_blocks(std::size_t size, int threads, std::size_t grain, const Bod
   }
   if (failure) std::rethrow_exception(failure);
 #else
-  // TBB prints a warning when asked for more threads than there are processors.
-  const int processors = tbb::info::default_concurrency();
-  tbb::task_arena arena(threads == 0 ? processors : std::min(threads, processors));
-  arena.execute([&] {
+  arena_of(static_cast<int>(concurrency(threads))).execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size, grain),
                       [&](const tbb::blocked_range<std::size_t>& block) { body(block.begin(), block.end()); });
   });
 #endif
 }
 
-/// The same in slices, with tick(share done) between them on the calling thread, so that a caller may report progress
-/// or throw to stop.
+/// Both, at the same time where there are threads for it.
+template <typename First, typename Second>
+void parallel_pair(int threads, const First& first, const Second& second) {
+  parallel_blocks(2, threads, 1, [&](std::size_t begin, std::size_t end) {
+    if (begin == 0) first();
+    if (end == 2) second();
+  });
+}
+
+/// The same as parallel_blocks in slices, with tick(share done) between them on the calling thread, so that a caller
+/// may report progress or throw to stop.
 template <typename Body, typename Tick>
 void parallel_slices(std::size_t size, int threads, std::size_t grain, std::size_t slice, const Body& body,
                      const Tick& tick) {

@@ -1,5 +1,6 @@
 #include "estimation/rigid_fit.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <cmath>
 
@@ -42,8 +43,9 @@ Centred centre(std::span<const PointPair> pairs) {
 
 // Two extents are needed to fix a rotation.
 bool lies_on_a_line(const Eigen::Matrix3d& spread) {
-  const Eigen::Vector3d singular_values = spread.jacobiSvd().singularValues();
-  return !(singular_values[1] > collinear * collinear * singular_values[0]) || singular_values[0] == 0;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread, Eigen::EigenvaluesOnly);
+  const Eigen::Vector3d& spreads = solver.eigenvalues();  // ascending
+  return !(spreads[1] > collinear * collinear * spreads[2]) || spreads[2] == 0;
 }
 
 Transformation assemble(const Eigen::Matrix3d& rotation, const Centred& c) {

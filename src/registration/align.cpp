@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 
+#include "core/concurrently.hpp"
 #include "features/extraction.hpp"
 #include "registration/exchange.hpp"
 #include "registration/mirror_image.hpp"
@@ -176,10 +177,17 @@ Result align_points(const TrimmedScan& source, const TrimmedScan& target, const 
   StageClock clock(progress);
   clock.start("scale");
   Options scaled = options;
-  scaled.scale.voxel_size = choose_voxel_size(source.cloud, target.cloud, options.scale);
+  scaled.scale.voxel_size = choose_voxel_size(source.cloud, target.cloud, options.scale, options.threads);
+  clock.start("voxel grid");
+  Features source_features, target_features;
+  const auto extract = [&](const TrimmedScan& scan, Features& features) {
+    return [&](const ProgressCallback& report) {
+      features = extract_features(scan.cloud, scan.viewpoint, scaled, report, Keypoints::later);
+      features.timings_s.clear();  // the clock here tells of both
+    };
+  };
+  concurrently(options.threads, progress, extract(source, source_features), extract(target, target_features));
   clock.finish();
-  Features source_features = extract_features(source.cloud, source.viewpoint, scaled, progress, Keypoints::later);
-  Features target_features = extract_features(target.cloud, target.viewpoint, scaled, progress, Keypoints::later);
   const CompleteBoth complete_both = [&](StageClock& at) {
     complete(scaled, at, source_features);
     complete(scaled, at, target_features);
@@ -211,8 +219,12 @@ Result align_scans(const Scan& source, const Scan& target, const Transformation*
   validate(options);
   require_finite(source.viewpoint);
   require_finite(target.viewpoint);
-  const TrimmedScan moving{TrimmedCloud(source.points, "source"), source.viewpoint};
-  const TrimmedScan fixed{TrimmedCloud(target.points, "target"), target.viewpoint};
+  std::optional<TrimmedCloud> source_cloud, target_cloud;
+  concurrently(
+      options.threads, {}, [&](const ProgressCallback&) { source_cloud.emplace(source.points, "source"); },
+      [&](const ProgressCallback&) { target_cloud.emplace(target.points, "target"); });
+  const TrimmedScan moving{std::move(*source_cloud), source.viewpoint};
+  const TrimmedScan fixed{std::move(*target_cloud), target.viewpoint};
   const double unit = unit_of_length(moving.cloud.bounds(), fixed.cloud.bounds(), options.scale.voxel_size);
   if (unit == 1) return align_points(moving, fixed, initial, options, progress);
   const auto guess = guess_in_unit(initial, unit);

@@ -69,6 +69,11 @@ CommonFrame::CommonFrame(const PreparedCloud& source, const PreparedCloud& targe
                          int threads)
     : source_(source), target_(target), descriptor_radius_(descriptor_radius), threads_(threads) {}
 
+void CommonFrame::describe(std::span<const Transformation> target_from_source) {
+  target_descriptors();
+  for (const Transformation& pose : target_from_source) source_descriptors(pose.linear());
+}
+
 const std::vector<Descriptor>& CommonFrame::target_descriptors() {
   if (!target_descriptors_) {
     const SupportTable supports = gather_supports(target_.grid, target_.keypoints, descriptor_radius_);
@@ -88,12 +93,12 @@ const std::vector<Descriptor>& CommonFrame::source_descriptors(const Eigen::Matr
   return cache_.back().descriptors;
 }
 
-std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d& target_from_source) {
+std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d& target_from_source, int threads) {
   const auto& source = frame.source_descriptors(target_from_source);
   const auto& target = frame.target_descriptors();
   const std::size_t m = source.size(), n = target.size();
   if (m == 0 || n == 0) return {};
-  const std::vector<std::uint16_t> distance = feature_distance_matrix(source, 1, target, frame.threads());
+  const std::vector<std::uint16_t> distance = feature_distance_matrix(source, 1, target, threads);
   std::vector<Nearest> of_source(m), of_target(n, std::numeric_limits<Nearest>::max());
   for (std::size_t i = 0; i < m; ++i) of_source[i] = nearest_in_row(&distance[i * n], i, of_target);
   std::vector<PointPair> matches;
@@ -104,10 +109,10 @@ std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d&
   return matches;
 }
 
-Rematch rematch(CommonFrame& frame, const Transformation& hypothesis, int degrees_of_freedom) {
+Rematch rematch(CommonFrame& frame, const Transformation& hypothesis, int degrees_of_freedom, int threads) {
   const double voxel_size = frame.target().features.voxel_size;
   const double tolerance = agreeing_distance * voxel_size;
-  Rematch best{hypothesis, mutual_matches(frame, hypothesis.linear()), 0};
+  Rematch best{hypothesis, mutual_matches(frame, hypothesis.linear(), threads), 0};
   best.agreeing = count_inliers(best.matches, hypothesis, tolerance);
   if (best.matches.empty()) return best;
   std::array<double, fit_scales.size()> scales;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <deque>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "estimation/rigid_fit.hpp"
@@ -11,13 +13,15 @@ namespace igsp {
 
 /// Descriptors of both clouds' keypoints in ONE frame, the target's axes: given a hypothesis of the rotation, no local
 /// reference frame is left that could fail to repeat. Descriptors of the target are computed once, where they are first
-/// asked for, those of the source are kept with their rotation and reused within 2 degrees.
+/// asked for, those of the source are kept with their rotation and reused within 2 degrees. Several threads may use
+/// it at once for rotations that are described already.
 class CommonFrame {
  public:
   CommonFrame(const PreparedCloud& source, const PreparedCloud& target, double descriptor_radius, int threads);
 
+  /// What rotations will be asked for.
+  void describe(std::span<const Transformation> target_from_source);
   const std::vector<Descriptor>& target_descriptors();
-  /// Valid until the next call.
   const std::vector<Descriptor>& source_descriptors(const Eigen::Matrix3d& target_from_source);
 
   const PreparedCloud& source() const { return source_; }
@@ -36,11 +40,11 @@ class CommonFrame {
   int threads_;
   std::optional<SupportTable> source_supports_;
   std::optional<std::vector<Descriptor>> target_descriptors_;
-  std::vector<Cached> cache_;
+  std::deque<Cached> cache_;
 };
 
 /// Mutual nearest neighbours by feature distance in the common frame of a rotation.
-std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d& target_from_source);
+std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d& target_from_source, int threads);
 
 /// A hypothesis after matching again in its common frame.
 struct Rematch {
@@ -50,6 +54,6 @@ struct Rematch {
 };
 
 /// Matches again, votes for the translation (mode of b - R a) and fits robustly; keeps the better of both poses.
-Rematch rematch(CommonFrame& frame, const Transformation& hypothesis, int degrees_of_freedom);
+Rematch rematch(CommonFrame& frame, const Transformation& hypothesis, int degrees_of_freedom, int threads);
 
 }  // namespace igsp

@@ -97,7 +97,7 @@ TEST(MutualMatches, AreNearestToEachOther) {
     if (nearest(target[j], source) != static_cast<std::ptrdiff_t>(i)) continue;
     expected.emplace_back(scene.prepared_source.keypoints[i], scene.prepared_target.keypoints[j]);
   }
-  const auto matches = mutual_matches(frame, scene.truth.linear());
+  const auto matches = mutual_matches(frame, scene.truth.linear(), 1);
   ASSERT_EQ(matches.size(), expected.size());
   ASSERT_GT(matches.size(), 20u);
   for (std::size_t k = 0; k < matches.size(); ++k) {
@@ -107,7 +107,7 @@ TEST(MutualMatches, AreNearestToEachOther) {
   }
   for (const int threads : {2, 4}) {
     CommonFrame other = scene.frame(threads);
-    EXPECT_EQ(mutual_matches(other, scene.truth.linear()).size(), matches.size());
+    EXPECT_EQ(mutual_matches(other, scene.truth.linear(), threads).size(), matches.size());
   }
 }
 
@@ -118,7 +118,7 @@ TEST(Rematch, FindsThePoseFromARotationThatIsNearlyRight) {
     Transformation hypothesis = scene.truth;
     hypothesis.linear() = Eigen::AngleAxisd(0.1, Eigen::Vector3d(1, 1, 0).normalized()) * scene.truth.linear();
     hypothesis.translation() += Eigen::Vector3d(1, -2, 1);  // 24 voxels away
-    const Rematch found = rematch(frame, hypothesis, 6);
+    const Rematch found = rematch(frame, hypothesis, 6, 1);
     EXPECT_LT((found.target_from_source.linear() - scene.truth.linear()).norm(), 0.05) << "seed " << seed;
     EXPECT_LT((found.target_from_source.translation() - scene.truth.translation()).norm(), 0.1) << "seed " << seed;
     std::size_t agreeing = 0;
@@ -136,7 +136,7 @@ TEST(Rematch, OfNoKeypointsKeepsTheHypothesis) {
   CommonFrame frame(prepared, prepared, 0.7, 1);
   Random random(8);
   const Transformation hypothesis = random.motion(1);
-  const Rematch found = rematch(frame, hypothesis, 6);
+  const Rematch found = rematch(frame, hypothesis, 6, 1);
   EXPECT_EQ(found.target_from_source.matrix(), hypothesis.matrix());
   EXPECT_TRUE(found.matches.empty());
   EXPECT_EQ(found.agreeing, 0u);

@@ -26,7 +26,7 @@ SearchOutcome direct_search(const CommonFrame& frame, const Options& options, St
   outcome.target_from_source = loop.target_from_source;
   outcome.iterations = std::move(loop.iterations);
   if (outcome.has_estimate) {
-    FineSurfaces surfaces(frame.source().features, frame.target().features);
+    const FineSurfaces surfaces(frame.source().features, frame.target().features, options.threads);
     outcome.precision = precision_at(surfaces, outcome.target_from_source, options.degrees_of_freedom);
   }
   return outcome;

@@ -4,6 +4,7 @@
 #include <array>
 #include <numeric>
 
+#include "core/parallel.hpp"
 #include "estimation/robust_fit.hpp"
 #include "igsp/evaluation.hpp"
 #include "matching/consistent_assignment.hpp"
@@ -89,29 +90,47 @@ std::vector<Hypothesis> propose_hypotheses(std::span<const Candidate> candidates
   const double tolerance = inlier_tolerance * voxel_size;
   const std::array<double, 5> scales{6 * voxel_size, 4 * voxel_size, 3 * voxel_size, 2 * voxel_size, 2 * voxel_size};
 
-  std::vector<Hypothesis> hypotheses;
-  // Fits `subset`, then all pairs robustly from there; kept unless it repeats an earlier one at `place`.
-  const auto propose = [&](std::span<const PointPair> subset, const Eigen::Vector3d& place) {
+  // Of a subset first, then of all pairs robustly from there.
+  const auto fit_to = [&](std::span<const PointPair> subset) -> std::optional<Transformation> {
     const auto initial = rigid_fit(subset, options.degrees_of_freedom);
-    if (!initial) return;
-    const auto fit = robust_fit(pairs, *initial, scales, options.degrees_of_freedom);
+    return initial ? robust_fit(pairs, *initial, scales, options.degrees_of_freedom) : std::nullopt;
+  };
+  std::vector<Hypothesis> hypotheses;
+  // Kept unless it repeats an earlier one at `place`.
+  const auto propose = [&](const std::optional<Transformation>& fit, const Eigen::Vector3d& place) {
     if (!fit) return;
     const bool repeated = std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) {
       return same_pose(h.target_from_source, *fit, place, voxel_size);
     });
     if (!repeated) hypotheses.push_back({*fit, count_inliers(pairs, *fit, tolerance)});
   };
-  propose(preferred_by_all(candidates, graph, pairs, source.size(), target.size()), Eigen::Vector3d::Zero());
-  for (const Ranked& seed : ranked_seeds(graph)) {
-    if (hypotheses.size() == static_cast<std::size_t>(options.hypotheses.max_proposed)) break;
-    const PointPair& seed_pair = pairs[seed.candidate];
-    const bool explained = std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) {
-      return (seed_pair.target - h.target_from_source * seed_pair.source).norm() < tolerance;
+  const auto is_explained = [&](const PointPair& seed) {
+    return std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) {
+      return (seed.target - h.target_from_source * seed.source).norm() < tolerance;
     });
-    if (explained) continue;
-    std::vector<PointPair> subset;
-    for (const std::uint32_t c : consistent_subset(graph, seed.candidate)) subset.push_back(pairs[c]);
-    propose(subset, seed_pair.source);
+  };
+  propose(fit_to(preferred_by_all(candidates, graph, pairs, source.size(), target.size())), Eigen::Vector3d::Zero());
+  // The next seeds that nothing explains yet are fitted at the same time, one for each thread, and then asked in their
+  // order as if each had waited for those before it.
+  const std::vector<Ranked> seeds = ranked_seeds(graph);
+  std::vector<std::uint32_t> next;
+  for (auto seed = seeds.begin(); seed != seeds.end();) {
+    next.clear();
+    for (; seed != seeds.end() && next.size() < concurrency(options.threads); ++seed) {
+      if (!is_explained(pairs[seed->candidate])) next.push_back(seed->candidate);
+    }
+    std::vector<std::optional<Transformation>> fits(next.size());
+    parallel_blocks(next.size(), options.threads, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        std::vector<PointPair> subset;
+        for (const std::uint32_t c : consistent_subset(graph, next[i])) subset.push_back(pairs[c]);
+        fits[i] = fit_to(subset);
+      }
+    });
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      if (hypotheses.size() == static_cast<std::size_t>(options.hypotheses.max_proposed)) return hypotheses;
+      if (!is_explained(pairs[next[i]])) propose(fits[i], pairs[next[i]].source);
+    }
   }
   return hypotheses;
 }

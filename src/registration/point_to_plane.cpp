@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parallel.hpp"
 #include "estimation/robust_fit.hpp"
 #include "spatial/local_pca.hpp"
 
@@ -45,6 +46,16 @@ struct NormalEquations {
     ++pairs;
   }
 
+  // Of other pairs at the same pose.
+  void add(const NormalEquations& other) {
+    information += other.information;
+    gradient += other.gradient;
+    weight_sum += other.weight_sum;
+    weighted_places += other.weighted_places;
+    weighted_squares += other.weighted_squares;
+    pairs += other.pairs;
+  }
+
   // Rotations and growth about the centroid of the pairs, which does not depend on where the cloud's other points are:
   // (p - c') x n = (p - c) x n - (c' - c) x n, and likewise with the dot product, so J' = T J.
   void move_centre_to_pairs() {
@@ -59,29 +70,60 @@ struct NormalEquations {
   }
 };
 
-// visit(p, q, n) for points of the source, evenly strided, and their nearest point of the target, where their normals
-// agree: p as moved, n the unit sum of both normals. `scale`: of the source, before the pose.
+// Of every point of the source its nearest point of the target as last found, or -1.
+using Partners = std::vector<std::int64_t>;
+
+// The nearest point within the radius. The last one bounds the sphere that has to be searched.
+std::int64_t nearest(const Surface& target, const Eigen::Vector3f& p, float radius, std::int64_t* last) {
+  if (!last) return target.grid().nearest(p, radius);
+  if (*last >= 0) {
+    const float distance = 1.0001f * (target.point(*last).cast<float>() - p).norm();
+    radius = std::min(radius, distance);
+    if (distance == radius) return *last = target.grid().nearest_within(p, radius);
+  }
+  return *last = target.grid().nearest(p, radius);
+}
+
+// Every stride-th point of a surface.
+struct Sample {
+  Sample(const Surface& surface, std::size_t max_points)
+      : stride(std::max<std::size_t>(1, surface.size() / max_points)), size((surface.size() + stride - 1) / stride) {}
+  std::size_t stride, size;
+};
+
+// visit(p, q, n) for points of the source, [begin, end) of the sample, and their nearest point of the target, where
+// their normals agree: p as moved, n the unit sum of both normals. `scale`: of the source, before the pose.
 template <typename Visit>
-void visit_pairs(Surface& source, Surface& target, const Transformation& pose, double scale, double radius,
-                 std::size_t max_points, const Visit& visit) {
-  const std::size_t stride = std::max<std::size_t>(1, source.size() / max_points);
-  for (std::size_t i = 0; i < source.size(); i += stride) {
+void visit_pairs(const Surface& source, const Surface& target, const Transformation& pose, double scale, double radius,
+                 const Sample& sample, std::size_t begin, std::size_t end, Partners* partners, const Visit& visit) {
+  for (std::size_t i = begin * sample.stride; i < std::min(source.size(), end * sample.stride); i += sample.stride) {
     const Eigen::Vector3d p = pose * (scale * source.point(i));
-    const std::int64_t j = target.grid().nearest(p.cast<float>(), static_cast<float>(radius));
+    const std::int64_t j =
+        nearest(target, p.cast<float>(), static_cast<float>(radius), partners ? &(*partners)[i] : nullptr);
     if (j < 0) continue;
-    const Eigen::Vector3d p_normal = pose.linear() * source.normal(i), &q_normal = target.normal(j);
+    const Eigen::Vector3d p_normal = pose.linear() * source.normal(i), q_normal = target.normal(j);
     const double cosine = p_normal.dot(q_normal);
     if (std::abs(cosine) < min_normal_cosine) continue;
     visit(p, target.point(j), (q_normal + std::copysign(1.0, cosine) * p_normal).normalized());
   }
 }
 
-NormalEquations linearise(Surface& source, Surface& target, const Transformation& pose, double scale, double radius,
-                          std::size_t max_points) {
-  NormalEquations equations{pose.translation(), 0.5 * radius};
-  visit_pairs(
-      source, target, pose, scale, radius, max_points,
-      [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& n) { equations.add(p, q, n); });
+// Summed up in blocks, and these in their order: the same bits for every number of threads.
+NormalEquations linearise(const Surface& source, const Surface& target, const Transformation& pose, double scale,
+                          double radius, std::size_t max_points, int threads, Partners* partners = nullptr) {
+  constexpr std::size_t block = 512;
+  const Sample sample(source, max_points);
+  const NormalEquations none{pose.translation(), 0.5 * radius};
+  std::vector<NormalEquations> parts((sample.size + block - 1) / block, none);
+  parallel_blocks(parts.size(), threads, 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      visit_pairs(
+          source, target, pose, scale, radius, sample, k * block, (k + 1) * block, partners,
+          [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& n) { parts[k].add(p, q, n); });
+    }
+  });
+  NormalEquations equations = none;
+  for (const NormalEquations& part : parts) equations.add(part);
   equations.move_centre_to_pairs();
   return equations;
 }
@@ -105,8 +147,9 @@ void fix_tilt(NormalEquations& equations) {
   }
 }
 
+// Steps shrink by a third and more each, so what is left is as small: far below what any scanner resolves in a voxel.
 bool is_small(const Vector6& step, double voxel_size) {
-  return step.head<3>().norm() < 1e-5 && step.tail<3>().norm() < 1e-4 * voxel_size;
+  return step.head<3>().norm() < 3e-5 && step.tail<3>().norm() < 3e-4 * voxel_size;
 }
 
 template <typename Solver>
@@ -116,20 +159,29 @@ bool is_solvable(const Solver& solver) {
 
 }  // namespace
 
-const Eigen::Vector3d& Surface::normal(std::size_t i) {
-  if (normals_[i] == unknown()) normals_[i] = local_normal(grid_, points_[i].cast<float>(), normal_radius_);
-  return normals_[i];
+Eigen::Vector3d Surface::normal(std::size_t i) const {
+  if (states_.empty() || states_[i].load(std::memory_order_acquire) == known) return normals_[i];
+  const Eigen::Vector3d normal = local_normal(grid_, points_[i].cast<float>(), normal_radius_);
+  // Threads that ask at the same time compute the same; one of them keeps it.
+  State state = unknown;
+  if (states_[i].compare_exchange_strong(state, being_kept)) {
+    normals_[i] = normal;
+    states_[i].store(known, std::memory_order_release);
+  }
+  return normal;
 }
 
-Transformation refine_point_to_plane(Surface& source, Surface& target, const Transformation& initial,
+Transformation refine_point_to_plane(const Surface& source, const Surface& target, const Transformation& initial,
                                      const PointToPlaneOptions& options) {
   Transformation pose = initial;
+  Partners partners(source.size(), -1);
   const std::size_t steps = options.radii.size() + options.max_last_steps;
   for (std::size_t k = 0; k < steps; ++k) {
     const bool is_early = k + 1 < options.radii.size();
     const double radius = options.radii[is_early ? k : options.radii.size() - 1] * options.voxel_size;
     NormalEquations equations =
-        linearise(source, target, pose, 1, radius, is_early ? options.early_points : options.max_points);
+        linearise(source, target, pose, 1, radius, is_early ? options.early_points : options.max_points,
+                  options.threads, &partners);
     if (equations.pairs < min_pairs) break;
     if (options.degrees_of_freedom == 4) fix_tilt(equations);
     const Eigen::LDLT<Matrix6> solver(equations.information.topLeftCorner<6, 6>());
@@ -142,12 +194,12 @@ Transformation refine_point_to_plane(Surface& source, Surface& target, const Tra
   return pose;
 }
 
-ScaleFit fit_scale(Surface& source, Surface& target, const Transformation& initial,
+ScaleFit fit_scale(const Surface& source, const Surface& target, const Transformation& initial,
                    const PointToPlaneOptions& options) {
   ScaleFit fit{1, std::numeric_limits<double>::infinity(), initial};
   for (const double radius : options.radii) {
-    NormalEquations equations =
-        linearise(source, target, fit.target_from_source, fit.factor, radius * options.voxel_size, options.max_points);
+    NormalEquations equations = linearise(source, target, fit.target_from_source, fit.factor,
+                                          radius * options.voxel_size, options.max_points, options.threads);
     if (equations.pairs < min_pairs) break;
     if (options.degrees_of_freedom == 4) fix_tilt(equations);
     const Eigen::LDLT<Matrix7> solver(equations.information);
@@ -165,18 +217,19 @@ ScaleFit fit_scale(Surface& source, Surface& target, const Transformation& initi
   return fit;
 }
 
-Linearisation linearise_at(Surface& source, Surface& target, const Transformation& pose, double radius,
-                           std::size_t max_points) {
-  const NormalEquations equations = linearise(source, target, pose, 1, radius, max_points);
+Linearisation linearise_at(const Surface& source, const Surface& target, const Transformation& pose, double radius,
+                           std::size_t max_points, int threads) {
+  const NormalEquations equations = linearise(source, target, pose, 1, radius, max_points, threads);
   const double variance = equations.weight_sum > 0 ? equations.weighted_squares / equations.weight_sum : 0.0;
   return {equations.centre, equations.information.topLeftCorner<6, 6>(), equations.gradient.head<6>(), variance,
           equations.pairs};
 }
 
-std::vector<double> shifts_along_normals(Surface& source, Surface& target, const Transformation& pose, double radius,
-                                         std::size_t max_points, const SmallMotion& motion) {
+std::vector<double> shifts_along_normals(const Surface& source, const Surface& target, const Transformation& pose,
+                                         double radius, std::size_t max_points, const SmallMotion& motion) {
   std::vector<double> shifts;
-  visit_pairs(source, target, pose, 1, radius, max_points,
+  const Sample sample(source, max_points);
+  visit_pairs(source, target, pose, 1, radius, sample, 0, sample.size, nullptr,
               [&](const Eigen::Vector3d& p, const Eigen::Vector3d&, const Eigen::Vector3d& n) {
                 const Eigen::Vector3d moved = motion.rotation_rad.cross(p - motion.centre) + motion.translation;
                 shifts.push_back(std::abs(n.dot(moved)));

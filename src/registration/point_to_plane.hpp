@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -8,13 +10,17 @@
 
 namespace igsp {
 
-/// A sampled surface with its search structure; normals are computed where they are asked for and kept. Refers to
-/// `points`. Not for use by several threads at once.
+/// A sampled surface with its search structure; normals are computed where they are asked for and kept, for several
+/// threads at once. Refers to `points`.
 class Surface {
  public:
   /// `normal_radius`: sphere of the principal component analysis.
   Surface(PointView points, PointGrid grid, double normal_radius)
-      : points_(points), grid_(std::move(grid)), normal_radius_(normal_radius), normals_(points.size(), unknown()) {}
+      : points_(points),
+        grid_(std::move(grid)),
+        normal_radius_(normal_radius),
+        normals_(points.size()),
+        states_(points.size()) {}
   /// With normals that are known already.
   Surface(PointView points, PointGrid grid, Points normals)
       : points_(points), grid_(std::move(grid)), normal_radius_(0), normals_(std::move(normals)) {}
@@ -23,14 +29,15 @@ class Surface {
   PointView points() const { return points_; }
   const Eigen::Vector3d& point(std::size_t i) const { return points_[i]; }
   const PointGrid& grid() const { return grid_; }
-  const Eigen::Vector3d& normal(std::size_t i);  ///< unit, sign arbitrary
+  Eigen::Vector3d normal(std::size_t i) const;  ///< unit, sign arbitrary
 
  private:
-  static Eigen::Vector3d unknown() { return Eigen::Vector3d::Zero(); }
+  enum State : std::uint8_t { unknown, being_kept, known };
   PointView points_;
   PointGrid grid_;
   double normal_radius_;
-  Points normals_;
+  mutable Points normals_;
+  mutable std::vector<std::atomic<State>> states_;  // empty where all are known
 };
 
 struct PointToPlaneOptions {
@@ -40,13 +47,14 @@ struct PointToPlaneOptions {
   std::size_t max_last_steps = 0;  ///< further steps at the last radius, until they are small
   double voxel_size = 0;
   int degrees_of_freedom = 6;
+  int threads = 1;
 };
 
 /// Fine registration: every step pairs points of the source with their nearest point of the target within the radius
 /// whose normal agrees, and minimises the distances along the sum of both normals (Rusinkiewicz 2019, symmetric ICP)
 /// under the Geman-McClure loss at half the radius. Ends early where a step finds too few pairs or a free direction.
 /// Returns target_from_source.
-Transformation refine_point_to_plane(Surface& source, Surface& target, const Transformation& initial,
+Transformation refine_point_to_plane(const Surface& source, const Surface& target, const Transformation& initial,
                                      const PointToPlaneOptions& options);
 
 /// How much larger the source would have to be to fit best.
@@ -58,7 +66,8 @@ struct ScaleFit {
 
 /// Seven parameters from a pose that is nearly right: as refine_point_to_plane, and a growth of the source. `options`:
 /// the radii and max_points, one step a radius.
-ScaleFit fit_scale(Surface& source, Surface& target, const Transformation& initial, const PointToPlaneOptions& options);
+ScaleFit fit_scale(const Surface& source, const Surface& target, const Transformation& initial,
+                   const PointToPlaneOptions& options);
 
 /// The normal equations of one step at a pose: sum of J^T w J and of J^T w r over pairs, and the variance of their
 /// residuals. Rotations about `centre` (target frame) first, then translations.
@@ -69,8 +78,8 @@ struct Linearisation {
   double residual_variance = 0;  ///< [units of the cloud ^ 2]
   std::size_t pairs = 0;
 };
-Linearisation linearise_at(Surface& source, Surface& target, const Transformation& pose, double radius,
-                           std::size_t max_points);
+Linearisation linearise_at(const Surface& source, const Surface& target, const Transformation& pose, double radius,
+                           std::size_t max_points, int threads = 1);
 
 /// A motion to first order: p moves by rotation x (p - centre) + translation.
 struct SmallMotion {
@@ -78,7 +87,7 @@ struct SmallMotion {
 };
 
 /// How far the motion shifts the pairs of linearise_at along their normals, either way [units of the cloud].
-std::vector<double> shifts_along_normals(Surface& source, Surface& target, const Transformation& pose, double radius,
-                                         std::size_t max_points, const SmallMotion& motion);
+std::vector<double> shifts_along_normals(const Surface& source, const Surface& target, const Transformation& pose,
+                                         double radius, std::size_t max_points, const SmallMotion& motion);
 
 }  // namespace igsp

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.hpp"
 #include "estimation/robust_fit.hpp"
 #include "registration/free_space.hpp"
 
@@ -46,11 +47,15 @@ double PoseAssessment::chance_odds() const {
   return std::pow(10.0, demanded - quality);
 }
 
-PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from_source) {
+PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from_source, int threads) {
   PoseAssessment assessment;
-  assessment.source_on_target = surface_contact(frame.source(), frame.target(), target_from_source);
-  assessment.target_on_source = surface_contact(frame.target(), frame.source(), target_from_source.inverse());
-  const auto matches = mutual_matches(frame, target_from_source.linear());
+  parallel_pair(
+      threads,
+      [&] { assessment.source_on_target = surface_contact(frame.source(), frame.target(), target_from_source); },
+      [&] {
+        assessment.target_on_source = surface_contact(frame.target(), frame.source(), target_from_source.inverse());
+      });
+  const auto matches = mutual_matches(frame, target_from_source.linear(), threads);
   assessment.mutual_matches = matches.size();
   assessment.agreeing_matches =
       count_inliers(matches, target_from_source, agreeing_distance * frame.target().features.voxel_size);

@@ -20,6 +20,6 @@ struct PoseAssessment {
   /// Odds that the pose is chance, against that it is right.
   double chance_odds() const;
 };
-PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from_source);
+PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from_source, int threads);
 
 }  // namespace igsp

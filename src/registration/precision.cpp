@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/parallel.hpp"
 #include "registration/surface_contact.hpp"
 
 namespace igsp {
@@ -88,16 +89,18 @@ double size_of(PointView points) {
   return points.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(points.size()));
 }
 
-FineSurfaces::FineSurfaces(const Features& source_features, const Features& target_features)
+FineSurfaces::FineSurfaces(const Features& source_features, const Features& target_features, int number_of_threads)
     : source(source_features.fine_points, PointGrid(source_features.fine_points, source_features.voxel_size),
              fine_normal_radius * source_features.voxel_size),
       target(target_features.fine_points, PointGrid(target_features.fine_points, target_features.voxel_size),
              fine_normal_radius * target_features.voxel_size),
-      voxel_size(target_features.voxel_size) {}
+      voxel_size(target_features.voxel_size),
+      threads(number_of_threads) {}
 
-Precision precision_at(FineSurfaces& surfaces, const Transformation& target_from_source, int degrees_of_freedom) {
-  const Linearisation at_pose = linearise_at(surfaces.source, surfaces.target, target_from_source,
-                                             fine_search_radius * surfaces.voxel_size, max_fine_points);
+Precision precision_at(const FineSurfaces& surfaces, const Transformation& target_from_source, int degrees_of_freedom) {
+  const Linearisation at_pose =
+      linearise_at(surfaces.source, surfaces.target, target_from_source, fine_search_radius * surfaces.voxel_size,
+                   max_fine_points, surfaces.threads);
   Precision precision;
   precision.centre = at_pose.centre;
   precision.inlier_rmse = std::sqrt(at_pose.residual_variance);
@@ -107,8 +110,9 @@ Precision precision_at(FineSurfaces& surfaces, const Transformation& target_from
   if (solver.info() == Eigen::Success && solver.isPositive() && solver.rcond() > 1e-15) {
     precision.covariance = solver.solve(Matrix6::Identity());
   }
-  const ScaleFit scale = fit_scale(surfaces.source, surfaces.target, target_from_source,
-                                   {0, max_scale_points, scale_radii, 0, surfaces.voxel_size, degrees_of_freedom});
+  const ScaleFit scale =
+      fit_scale(surfaces.source, surfaces.target, target_from_source,
+                {0, max_scale_points, scale_radii, 0, surfaces.voxel_size, degrees_of_freedom, surfaces.threads});
   if (std::isfinite(scale.sigma)) {
     precision.scale = scale.factor;
     precision.scale_sigma = scale.sigma;
@@ -123,13 +127,13 @@ bool is_of_another_scale(const Precision& precision) {
 }
 
 std::vector<FreeDirection> free_directions(const PreparedCloud& moved, const PreparedCloud& fixed,
-                                           const Transformation& fixed_from_moved) {
+                                           const Transformation& fixed_from_moved, int threads) {
   const double v = fixed.features.voxel_size;
   const double size = size_of(moved.features.points);
-  Surface moved_surface(moved.features.points, moved.grid, moved.features.normals);
-  Surface fixed_surface(fixed.features.points, fixed.grid, fixed.features.normals);
+  const Surface moved_surface(moved.features.points, moved.grid, moved.features.normals);
+  const Surface fixed_surface(fixed.features.points, fixed.grid, fixed.features.normals);
   const Linearisation at_pose =
-      linearise_at(moved_surface, fixed_surface, fixed_from_moved, search_radius * v, max_points);
+      linearise_at(moved_surface, fixed_surface, fixed_from_moved, search_radius * v, max_points, threads);
   if (at_pose.pairs == 0 || !(size > 0)) return {};
   Vector6 scale;
   scale << Eigen::Vector3d::Constant(1 / size), Eigen::Vector3d::Ones();
@@ -152,15 +156,23 @@ std::vector<FreeDirection> free_directions(const PreparedCloud& moved, const Pre
     return median_of(shifts_along_normals(moved_surface, fixed_surface, fixed_from_moved, search_radius * v, max_points,
                                           whole)) > alike * seen * size;
   };
-  std::vector<FreeDirection> found;
-  for (int i = 0; i < 6 && solver.eigenvalues()[i] < well_fixed * well_fixed; ++i) {
+  const auto is_free = [&](std::size_t i) {
     const Vector6 motion = solver.eigenvectors().col(i);
     const double seen = std::sqrt(std::max(0.0, solver.eigenvalues()[i]));
+    if (seen >= well_fixed) return false;
     const double share = seen < hardly_seen ? similar_contact : unchanged_contact;
-    if (is_unevenness(motion, seen) ||
-        (still_touches(trial_motion * v * motion, share) && still_touches(-trial_motion * v * motion, share))) {
-      found.push_back({motion, describe_motion(motion)});
-    }
+    return is_unevenness(motion, seen) ||
+           (still_touches(trial_motion * v * motion, share) && still_touches(-trial_motion * v * motion, share));
+  };
+  std::array<bool, 6> free{};
+  parallel_blocks(free.size(), threads, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) free[i] = is_free(i);
+  });
+  std::vector<FreeDirection> found;
+  for (int i = 0; i < 6; ++i) {
+    if (!free[i]) continue;
+    const Vector6 motion = solver.eigenvectors().col(i);
+    found.push_back({motion, describe_motion(motion)});
   }
   return found;
 }

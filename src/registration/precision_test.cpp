@@ -24,7 +24,7 @@ Precision precision_in(double unit) {
   for (Points* points : {&source.fine_points, &target.fine_points}) {
     for (Eigen::Vector3d& point : *points) point *= unit;
   }
-  FineSurfaces surfaces(source, target);
+  const FineSurfaces surfaces(source, target, 1);
   return precision_at(surfaces, Transformation::Identity(), 6);
 }
 

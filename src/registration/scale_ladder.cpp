@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "core/concurrently.hpp"
+#include "core/parallel.hpp"
 #include "features/extraction.hpp"
 
 namespace igsp {
@@ -26,7 +28,10 @@ ScaleLadder::ScaleLadder(const Features& source, const Features& target, Complet
   while (rungs_.size() < most_rungs) {
     const Rung& below = rungs_.back();
     if (std::min(below.source.points.size(), below.target.points.size()) < min_voxels) break;
-    const Coarser& pair = coarser_.emplace_back(coarser_voxels(below.source), coarser_voxels(below.target));
+    Coarser& pair = coarser_.emplace_back();
+    parallel_pair(
+        options.threads, [&] { pair.source = coarser_voxels(below.source); },
+        [&] { pair.target = coarser_voxels(below.target); });
     rungs_.push_back({pair.source, pair.target, {}});
   }
 }
@@ -35,15 +40,21 @@ void ScaleLadder::complete_coarser(Coarser& pair) {
   clock_.start("coarser scale");
   std::string stage;
   int begun = 0;
+  double done = 0;
   const ProgressCallback report = [&](const Progress& progress) {
     if (progress.stage != stage) ++begun, stage = progress.stage;
-    clock_.report((begun - 1 + progress.fraction) / stages);
+    done = std::clamp((begun - 1 + progress.fraction) / stages, done, 1.0);
+    clock_.report(done);
     return true;
   };
-  StageClock own(report);
-  complete(options_, own, pair.source);
-  complete(options_, own, pair.target);
-  own.finish();
+  const auto complete_one = [&](Features& features) {
+    return [&](const ProgressCallback& progress) {
+      StageClock own(progress);
+      complete(options_, own, features);
+      own.finish();
+    };
+  };
+  concurrently(options_.threads, report, complete_one(pair.source), complete_one(pair.target));
 }
 
 CommonFrame& ScaleLadder::frame(std::size_t rung) {
@@ -60,7 +71,7 @@ CommonFrame& ScaleLadder::frame(std::size_t rung) {
 }
 
 FineSurfaces& ScaleLadder::fine_surfaces() {
-  if (!fine_surfaces_) fine_surfaces_.emplace(source(), target());
+  if (!fine_surfaces_) fine_surfaces_.emplace(source(), target(), options_.threads);
   return *fine_surfaces_;
 }
 

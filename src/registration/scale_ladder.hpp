@@ -24,6 +24,7 @@ class ScaleLadder {
               StageClock& clock);
 
   std::size_t rungs() const { return rungs_.size(); }  ///< at least one; none where too few voxels would be left
+  int threads() const { return options_.threads; }
   double voxel_size(std::size_t rung) const { return rungs_[rung].target.voxel_size; }
   CommonFrame& frame(std::size_t rung);
 

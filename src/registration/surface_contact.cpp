@@ -62,11 +62,10 @@ SurfaceContact surface_contact(const PreparedCloud& moved, const PreparedCloud& 
   return contact;
 }
 
-double overlap_of(PointView moved, Surface& fixed, double voxel_size, const Transformation& fixed_from_moved) {
+double overlap_of(PointView moved, const Surface& fixed, double voxel_size, const Transformation& fixed_from_moved) {
   std::size_t covered = 0;
   const std::size_t places = visit_places(
-      moved, fixed.points(), fixed.grid(), voxel_size, fixed_from_moved,
-      [&](std::size_t j) -> const Eigen::Vector3d& { return fixed.normal(j); },
+      moved, fixed.points(), fixed.grid(), voxel_size, fixed_from_moved, [&](std::size_t j) { return fixed.normal(j); },
       [&](std::size_t, double normal) { covered += normal < on_surface * voxel_size; });
   return share_of(covered, places);
 }

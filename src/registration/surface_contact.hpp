@@ -12,7 +12,7 @@ struct SurfaceContact {
 };
 
 /// The overlap alone, which asks for no normals but those of the places that are met.
-double overlap_of(PointView moved, Surface& fixed, double voxel_size, const Transformation& fixed_from_moved);
+double overlap_of(PointView moved, const Surface& fixed, double voxel_size, const Transformation& fixed_from_moved);
 
 /// Places beyond the rim of `fixed` do not count, so the overlap does not matter for `share`; surfaces that merely
 /// cross give about 1/4. Weights by surface variation, since flat ground touches under any pose that keeps it level.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.hpp"
 #include "registration/pose_assessment.hpp"
 #include "registration/precision.hpp"
 #include "registration/surface_contact.hpp"
@@ -36,7 +37,8 @@ struct Judgement {
 std::vector<FreeDirection> free_directions_at(ScaleLadder& scales, std::size_t rung,
                                               const Transformation& target_from_source) {
   const CommonFrame& frame = scales.frame(rung);
-  std::vector<FreeDirection> free = free_directions(frame.source(), frame.target(), target_from_source);
+  std::vector<FreeDirection> free =
+      free_directions(frame.source(), frame.target(), target_from_source, scales.threads());
   if (free.empty() || rung == 0) return free;
   return free_directions_at(scales, std::min<std::size_t>(rung - 1, 1), target_from_source);
 }
@@ -47,7 +49,8 @@ std::vector<Rival> rivals_at(ScaleLadder& scales, std::size_t rung, const Search
   const double v = scales.voxel_size(rung);
   if (!outcome.ranked[rung].empty()) return distinct_rivals(outcome.ranked[rung], outcome.target_from_source, v);
   std::vector<Rival> rivals = distinct_rivals(outcome.ranked[outcome.rung], outcome.target_from_source, v);
-  for (Rival& rival : rivals) rival.assessment = assess_pose(scales.frame(rung), rival.target_from_source);
+  for (Rival& rival : rivals)
+    rival.assessment = assess_pose(scales.frame(rung), rival.target_from_source, scales.threads());
   sort_by_quality(rivals);
   return rivals;
 }
@@ -63,7 +66,7 @@ void weigh(const SearchOutcome& outcome, Judgement& judgement) {
 Judgement judgement_at(ScaleLadder& scales, std::size_t rung, const SearchOutcome& outcome) {
   Judgement judgement;
   judgement.rung = rung;
-  judgement.pose = assess_pose(scales.frame(rung), outcome.target_from_source);
+  judgement.pose = assess_pose(scales.frame(rung), outcome.target_from_source, scales.threads());
   judgement.free_directions = free_directions_at(scales, rung, outcome.target_from_source);
   judgement.rivals = rivals_at(scales, rung, outcome);
   weigh(outcome, judgement);
@@ -78,7 +81,7 @@ void refine_rivals(ScaleLadder& scales, const SearchOutcome& outcome, const Opti
     const double quality = rival.assessment.quality;
     if (quality < 0 || quality < judgement.pose.quality - near_quality) break;
     const Transformation pose = refined(scales, rung, rival.target_from_source, options);
-    const PoseAssessment assessment = assess_pose(scales.frame(rung), pose);
+    const PoseAssessment assessment = assess_pose(scales.frame(rung), pose, scales.threads());
     if (assessment.quality > quality) rival = {pose, assessment}, is_changed = true;
   }
   if (!is_changed) return;
@@ -113,10 +116,13 @@ std::optional<RunnerUp> runner_up_of(const Judgement& judgement) {
 void tell_overlap(const ScaleLadder& scales, const Transformation& target_from_source, Result& result) {
   const Features &source = scales.source(), &target = scales.target();
   const double v = target.voxel_size, normal_radius = result.options.keypoints.pca_radius * v;
-  Surface source_surface(source.points, PointGrid(source.points, 3.0 * v), normal_radius);
-  Surface target_surface(target.points, PointGrid(target.points, 3.0 * v), normal_radius);
-  result.overlap_source = overlap_of(source.points, target_surface, v, target_from_source);
-  result.overlap_target = overlap_of(target.points, source_surface, v, target_from_source.inverse());
+  const auto overlap = [&](const Features& moved, const Features& fixed, const Transformation& fixed_from_moved) {
+    const Surface surface(fixed.points, PointGrid(fixed.points, 3.0 * v), normal_radius);
+    return overlap_of(moved.points, surface, v, fixed_from_moved);
+  };
+  parallel_pair(
+      result.options.threads, [&] { result.overlap_source = overlap(source, target, target_from_source); },
+      [&] { result.overlap_target = overlap(target, source, target_from_source.inverse()); });
 }
 
 }  // namespace

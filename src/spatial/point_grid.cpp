@@ -52,16 +52,6 @@ PointGrid::PointGrid(PointView points, double wanted_cell_size) : index(points.s
   }
 }
 
-std::array<int, 3> PointGrid::cell_of(const Eigen::Vector3f& point) const {
-  std::array<int, 3> cell;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float c = (point[axis] - origin[axis]) * inverse_cell_size;
-    // Truncated. In this order of arguments NaN, as from infinite coordinates, becomes 0.
-    cell[axis] = static_cast<int>(std::min(std::max(0.0f, c), static_cast<float>(cells[axis] - 1)));
-  }
-  return cell;
-}
-
 std::int64_t PointGrid::nearest(const Eigen::Vector3f& centre, float radius) const {
   // Most queries end close by: a small sphere first, and what it finds is the nearest of all.
   for (float reach = std::min(radius, 0.4f * cell_size); reach > 0 && reach < radius; reach *= 2.5f) {
@@ -71,22 +61,14 @@ std::int64_t PointGrid::nearest(const Eigen::Vector3f& centre, float radius) con
   return nearest_within(centre, radius);
 }
 
-float PointGrid::squared_distance(std::uint32_t i, const Eigen::Vector3f& centre) const {
-  const float dx = x[i] - centre.x(), dy = y[i] - centre.y(), dz = z[i] - centre.z();
-  return dx * dx + dy * dy + dz * dz;
-}
-
 std::int64_t PointGrid::nearest_within(const Eigen::Vector3f& centre, float radius) const {
+  const float cx = centre.x(), cy = centre.y(), cz = centre.z();
   float best = radius * radius;
   std::int64_t nearest = -1;
   visit_runs(centre, radius, best, [&](std::uint32_t begin, std::uint32_t end) {
-    // Most runs have nothing nearer, which several points at a time tell.
-    float least = std::numeric_limits<float>::infinity();
-#pragma omp simd reduction(min : least)
-    for (std::uint32_t i = begin; i < end; ++i) least = std::min(least, squared_distance(i, centre));
-    if (!(least <= best)) return;
     for (std::uint32_t i = begin; i < end; ++i) {
-      const float squared = squared_distance(i, centre);
+      const float dx = x[i] - cx, dy = y[i] - cy, dz = z[i] - cz;
+      const float squared = dx * dx + dy * dy + dz * dz;
       // Ties go to the lower original index, so that the answer does not depend on the cells.
       if (squared < best || (squared == best && (nearest < 0 || index[i] < nearest))) {
         best = squared;

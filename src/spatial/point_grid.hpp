@@ -17,7 +17,15 @@ class PointGrid {
   PointGrid(PointView points, double cell_size);
 
   std::size_t size() const { return index.size(); }
-  std::array<int, 3> cell_of(const Eigen::Vector3f& point) const;
+  std::array<int, 3> cell_of(const Eigen::Vector3f& point) const {
+    std::array<int, 3> cell;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float c = (point[axis] - origin[axis]) * inverse_cell_size;
+      // Truncated. In this order of arguments NaN, as from infinite coordinates, becomes 0.
+      cell[axis] = static_cast<int>(std::min(std::max(0.0f, c), static_cast<float>(cells[axis] - 1)));
+    }
+    return cell;
+  }
   std::size_t cell_number(int cx, int cy, int cz) const {
     return (static_cast<std::size_t>(cz) * cells[1] + cy) * cells[0] + cx;
   }
@@ -61,6 +69,8 @@ class PointGrid {
 
   /// Nearest point within `radius`: its index in the original order, or -1.
   std::int64_t nearest(const Eigen::Vector3f& centre, float radius) const;
+  /// The same, where the radius is known to be little more than the distance.
+  std::int64_t nearest_within(const Eigen::Vector3f& centre, float radius) const;
 
   Eigen::Vector3f origin;  ///< corner of cell (0, 0, 0)
   float cell_size;
@@ -71,8 +81,6 @@ class PointGrid {
   std::vector<float> x, y, z;
 
  private:
-  std::int64_t nearest_within(const Eigen::Vector3f& centre, float radius) const;
-  float squared_distance(std::uint32_t i, const Eigen::Vector3f& centre) const;
   float distance_to_cell(float coordinate, int cell) const {
     const float low = cell * cell_size;
     return std::max({low - coordinate, coordinate - low - cell_size, 0.0f});

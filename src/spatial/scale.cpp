@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "igsp/errors.hpp"
 #include "spatial/cell_hash.hpp"
 #include "spatial/scatter_filter.hpp"
@@ -46,17 +47,22 @@ Occupancy occupancy(PointView cloud, const Bounds& bounds, double noise_density,
 
 }  // namespace
 
-double choose_voxel_size(const TrimmedCloud& source, const TrimmedCloud& target, const ScaleOptions& options) {
+double choose_voxel_size(const TrimmedCloud& source, const TrimmedCloud& target, const ScaleOptions& options,
+                         int threads) {
   if (options.voxel_size > 0) return options.voxel_size;
   const double extent = std::max(source.bounds().diagonal(), target.bounds().diagonal());
   if (extent == 0) throw InvalidArgument("all points coincide in both clouds; set voxel_size to align them");
 
-  const double source_noise = scatter_density(source.points(), source.bounds());
-  const double target_noise = scatter_density(target.points(), target.bounds());
+  double source_noise = 0, target_noise = 0;
+  parallel_pair(
+      threads, [&] { source_noise = scatter_density(source.points(), source.bounds()); },
+      [&] { target_noise = scatter_density(target.points(), target.bounds()); });
   double voxel_size = extent / 200;
   for (int step = 0; step < max_steps; ++step) {
-    const Occupancy in_source = occupancy(source.points(), source.bounds(), source_noise, voxel_size);
-    const Occupancy in_target = occupancy(target.points(), target.bounds(), target_noise, voxel_size);
+    Occupancy in_source, in_target;
+    parallel_pair(
+        threads, [&] { in_source = occupancy(source.points(), source.bounds(), source_noise, voxel_size); },
+        [&] { in_target = occupancy(target.points(), target.bounds(), target_noise, voxel_size); });
     // A surface has about 1/v^2 voxels, hence the square root.
     const double to_count = std::sqrt(std::sqrt(in_source.voxels * in_target.voxels) / options.target_points);
     const double to_spacing = std::sqrt(std::max(in_source.voxels / (max_voxels_per_point * source.points().size()),

@@ -10,7 +10,8 @@ namespace igsp {
 /// average more than 60 % of the voxels hold a single point, as those far from a scanner do: they show no surface.
 /// Returns options.voxel_size if it is set. Scales with the unit of length. Throws InvalidArgument when all points of
 /// both clouds coincide.
-double choose_voxel_size(const TrimmedCloud& source, const TrimmedCloud& target, const ScaleOptions& options);
+double choose_voxel_size(const TrimmedCloud& source, const TrimmedCloud& target, const ScaleOptions& options,
+                         int threads = 1);
 
 /// The same for clouds as they are; their stray points are left out.
 double choose_voxel_size(PointView source, PointView target, const ScaleOptions& options);

@@ -12,6 +12,7 @@
 #include "align/answer.hpp"
 #include "align/scale_request.hpp"
 #include "config/option_list.hpp"
+#include "core/concurrently.hpp"
 #include "files/cloud_input.hpp"
 #include "files/foreign_formats.hpp"
 #include "files/moved_output.hpp"
@@ -105,16 +106,29 @@ std::string contradicted(const CloudInput& cloud, std::string_view option, const
                      cloud.viewpoint.warning, option, text);
 }
 
-std::vector<std::string> warnings_about(const CloudInput& source, const CloudInput& target, const ScaleRequest& scale) {
+// A cloud as it was asked for, and how far it reaches without its stray points.
+struct SettledCloud {
+  CloudInput input;
+  double extent = 0;
+};
+
+SettledCloud settled_cloud(const fs::path& path, std::string_view stage, const ViewpointRequest& viewpoint,
+                           const AlignSettings& settings, const ProgressCallback& progress) {
+  SettledCloud cloud;
+  cloud.input = read_cloud(path, static_cast<std::size_t>(settings.max_points), stage, progress, settings.read);
+  settle_viewpoint(cloud.input, viewpoint);
+  cloud.extent = TrimmedCloud(cloud.input.points, path.string()).bounds().diagonal();
+  return cloud;
+}
+
+std::vector<std::string> warnings_about(const CloudInput& source, const CloudInput& target, double source_extent,
+                                        double target_extent, const ScaleRequest& scale) {
   std::vector<std::string> warnings;
   for (const CloudInput* cloud : {&source, &target}) {
     for (std::string& line : left_out_of(*cloud)) warnings.push_back(std::move(line));
   }
   constexpr double suspicious = 100.0;
-  const auto extent_of = [](const CloudInput& cloud) {
-    return TrimmedCloud(cloud.points, cloud.path.string()).bounds().diagonal();
-  };
-  const double source_extent = scale.factor * extent_of(source), target_extent = extent_of(target);
+  source_extent *= scale.factor;
   const double power = std::log10(source_extent / target_extent);
   if (std::abs(power) >= std::log10(suspicious) && !scale.automatic) {
     warnings.push_back(
@@ -127,12 +141,16 @@ std::vector<std::string> warnings_about(const CloudInput& source, const CloudInp
 // A cloud that was too large to keep whole is replaced by the centroids of a voxel filter four times finer than the
 // method's own, read from the file in chunks. The thinned clouds only tell how fine; the method chooses its voxel size
 // from the centroids.
-void stream_large_clouds(CloudInput& source, CloudInput& target, const ScaleOptions& options,
+void stream_large_clouds(CloudInput& source, CloudInput& target, const ScaleOptions& options, int threads,
                          const ProgressCallback& progress) {
   if (source.whole() && target.whole()) return;
   const double fine = choose_voxel_size(source.points, target.points, options) / 4.0;
-  if (!source.whole()) source.points = read_centroids(source, fine, "filter source", progress);
-  if (!target.whole()) target.points = read_centroids(target, fine, "filter target", progress);
+  const auto filtered = [&](CloudInput& cloud, std::string_view stage) {
+    return [&cloud, stage, fine](const ProgressCallback& report) {
+      if (!cloud.whole()) cloud.points = read_centroids(cloud, fine, stage, report);
+    };
+  };
+  concurrently(threads, progress, filtered(source, "filter source"), filtered(target, "filter target"));
 }
 
 // The reports say what happened in any case; the other files exist only for an answer to rely on, unless forced.
@@ -200,13 +218,19 @@ int run_align(const AlignSettings& settings) {
   if (!settings.initial.empty()) initial = read_transformation(settings.initial);
   ProgressBar bar(!settings.quiet);
   const ProgressCallback progress = bar.callback();
-  const auto max_points = static_cast<std::size_t>(settings.max_points);
-  CloudInput source = read_cloud(settings.source, max_points, "read source", progress, settings.read);
-  CloudInput target = read_cloud(settings.target, max_points, "read target", progress, settings.read);
+  SettledCloud settled_source, settled_target;
+  concurrently(
+      options.threads, progress,
+      [&](const ProgressCallback& report) {
+        settled_source = settled_cloud(settings.source, "read source", source_viewpoint, settings, report);
+      },
+      [&](const ProgressCallback& report) {
+        settled_target = settled_cloud(settings.target, "read target", target_viewpoint, settings, report);
+      });
+  CloudInput &source = settled_source.input, &target = settled_target.input;
   std::vector<std::string> warnings = unusual_values(options);
-  std::ranges::move(warnings_about(source, target, scale), std::back_inserter(warnings));
-  settle_viewpoint(source, source_viewpoint);
-  settle_viewpoint(target, target_viewpoint);
+  std::ranges::move(warnings_about(source, target, settled_source.extent, settled_target.extent, scale),
+                    std::back_inserter(warnings));
   if (!source.viewpoint.warning.empty()) {
     warnings.push_back(contradicted(source, "--source-viewpoint", settings.source_viewpoint));
   }
@@ -214,8 +238,8 @@ int run_align(const AlignSettings& settings) {
     warnings.push_back(contradicted(target, "--target-viewpoint", settings.target_viewpoint));
   }
   if (scale.factor != 1) scale_cloud(source, scale.factor);
-  stream_large_clouds(source, target, options.scale, progress);
-  const double read = now_s(), cpu_before = cpu_now_s();
+  stream_large_clouds(source, target, options.scale, options.threads, progress);
+  const double after_reading = now_s(), cpu_before = cpu_now_s();
   Result result = registered_pair(source, target, initial, scale, options, progress);
   const double cpu_seconds = cpu_now_s() - cpu_before;
   std::vector<Diagnosis> diagnosis;
@@ -226,7 +250,7 @@ int run_align(const AlignSettings& settings) {
   bar.finish();
   result.source.points = source.total;
   result.target.points = target.total;
-  result.timings_s.insert(result.timings_s.begin(), {"read", read - start});
+  result.timings_s.insert(result.timings_s.begin(), {"read", after_reading - start});
   for (const std::string& warning : warnings) {
     if (!settings.quiet) std::cerr << "igsp: warning: " << warning << "\n";
   }
