@@ -13,7 +13,6 @@
 namespace igsp {
 namespace {
 
-constexpr double many_more = 1.5;
 constexpr double reuse_angle_rad = 2.0 * M_PI / 180.0;
 constexpr double agreeing_distance = 2.5;                        // voxels
 constexpr std::array<double, 2> mode_radii{4.0, 8.0};            // voxels
@@ -68,41 +67,35 @@ IGSP_MULTIVERSION Nearest nearest_in_row(const std::uint16_t* row, std::size_t i
 
 CommonFrame::CommonFrame(const PreparedCloud& source, const PreparedCloud& target, double descriptor_radius,
                          int threads)
-    : source_(source),
-      target_(target),
-      descriptor_radius_(descriptor_radius),
-      threads_(threads),
-      turns_source_(static_cast<double>(source.keypoints.size()) <=
-                    many_more * static_cast<double>(target.keypoints.size())) {}
+    : source_(source), target_(target), descriptor_radius_(descriptor_radius), threads_(threads) {}
 
 void CommonFrame::describe(std::span<const Transformation> target_from_source) {
-  for (const Transformation& pose : target_from_source) descriptors(pose.linear());
+  target_descriptors();
+  for (const Transformation& pose : target_from_source) source_descriptors(pose.linear());
 }
 
-CommonFrame::Descriptors CommonFrame::descriptors(const Eigen::Matrix3d& target_from_source) {
-  if (!fixed_) {
-    const PreparedCloud& cloud = turns_source_ ? target_ : source_;
-    const SupportTable supports = gather_supports(cloud.grid, cloud.keypoints, descriptor_radius_);
-    fixed_ = describe_in_frame(supports, Eigen::Matrix3d::Identity(), descriptor_radius_, threads_);
+const std::vector<Descriptor>& CommonFrame::target_descriptors() {
+  if (!target_descriptors_) {
+    const SupportTable supports = gather_supports(target_.grid, target_.keypoints, descriptor_radius_);
+    target_descriptors_ = describe_in_frame(supports, Eigen::Matrix3d::Identity(), descriptor_radius_, threads_);
   }
-  const std::vector<Descriptor>& other = turned(target_from_source);
-  return turns_source_ ? Descriptors{other, *fixed_} : Descriptors{*fixed_, other};
+  return *target_descriptors_;
 }
 
-const std::vector<Descriptor>& CommonFrame::turned(const Eigen::Matrix3d& target_from_source) {
+const std::vector<Descriptor>& CommonFrame::source_descriptors(const Eigen::Matrix3d& target_from_source) {
   for (const Cached& cached : cache_) {
     if (rotation_error_rad(cached.rotation, target_from_source) < reuse_angle_rad) return cached.descriptors;
   }
-  const PreparedCloud& cloud = turns_source_ ? source_ : target_;
-  if (!turned_supports_) turned_supports_ = gather_supports(cloud.grid, cloud.keypoints, descriptor_radius_);
-  // The other cloud's axes, seen in this one: the target's in the source are the columns of R^T.
-  const Eigen::Matrix3d axes = turns_source_ ? Eigen::Matrix3d(target_from_source.transpose()) : target_from_source;
-  cache_.push_back({target_from_source, describe_in_frame(*turned_supports_, axes, descriptor_radius_, threads_)});
+  if (!source_supports_) source_supports_ = gather_supports(source_.grid, source_.keypoints, descriptor_radius_);
+  // The target's axes, seen in the source: the columns of R^T.
+  cache_.push_back({target_from_source, describe_in_frame(*source_supports_, target_from_source.transpose(),
+                                                          descriptor_radius_, threads_)});
   return cache_.back().descriptors;
 }
 
 std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d& target_from_source, int threads) {
-  const auto& [source, target] = frame.descriptors(target_from_source);
+  const auto& source = frame.source_descriptors(target_from_source);
+  const auto& target = frame.target_descriptors();
   const std::size_t m = source.size(), n = target.size();
   if (m == 0 || n == 0) return {};
   const std::vector<std::uint16_t> distance = feature_distance_matrix(source, 1, target, threads);

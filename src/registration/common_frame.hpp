@@ -11,22 +11,18 @@
 
 namespace igsp {
 
-/// Descriptors of both clouds' keypoints in ONE frame, the axes of one of the clouds: given a hypothesis of the
-/// rotation, no local reference frame is left that could fail to repeat. The axes are those of the target or, where the
-/// source has many more keypoints, of the source: that cloud is described once, the descriptors of the other one are
-/// kept with their rotation and reused within 2 degrees. Several threads may use it at once for rotations that are
-/// described already.
+/// Descriptors of both clouds' keypoints in ONE frame, the target's axes: given a hypothesis of the rotation, no local
+/// reference frame is left that could fail to repeat. Descriptors of the target are computed once, where they are first
+/// asked for, those of the source are kept with their rotation and reused within 2 degrees. Several threads may use
+/// it at once for rotations that are described already.
 class CommonFrame {
  public:
   CommonFrame(const PreparedCloud& source, const PreparedCloud& target, double descriptor_radius, int threads);
 
-  struct Descriptors {
-    const std::vector<Descriptor>&source, &target;
-  };
-  Descriptors descriptors(const Eigen::Matrix3d& target_from_source);
-
   /// What rotations will be asked for.
   void describe(std::span<const Transformation> target_from_source);
+  const std::vector<Descriptor>& target_descriptors();
+  const std::vector<Descriptor>& source_descriptors(const Eigen::Matrix3d& target_from_source);
 
   const PreparedCloud& source() const { return source_; }
   const PreparedCloud& target() const { return target_; }
@@ -38,15 +34,12 @@ class CommonFrame {
     Eigen::Matrix3d rotation;
     std::vector<Descriptor> descriptors;
   };
-  const std::vector<Descriptor>& turned(const Eigen::Matrix3d& target_from_source);
-
   const PreparedCloud& source_;
   const PreparedCloud& target_;
   double descriptor_radius_;
   int threads_;
-  bool turns_source_;
-  std::optional<std::vector<Descriptor>> fixed_;
-  std::optional<SupportTable> turned_supports_;
+  std::optional<SupportTable> source_supports_;
+  std::optional<std::vector<Descriptor>> target_descriptors_;
   std::deque<Cached> cache_;
 };
 

@@ -89,9 +89,9 @@ Options in_one_thread(Options options) {
 
 LoopOutcome hybrid_loop(CommonFrame& frame, const Transformation& initial, int iterations, const Options& options,
                         const std::function<void(int)>& tick = {}) {
-  const auto& [source, target] = frame.descriptors(initial.linear());
-  const LoopInput input{frame.source().keypoints, frame.target().keypoints, source, 1, target,
-                        frame.target().features.voxel_size};
+  const LoopInput input{
+      frame.source().keypoints,   frame.target().keypoints,          frame.source_descriptors(initial.linear()), 1,
+      frame.target_descriptors(), frame.target().features.voxel_size};
   return igsp_loop(input, initial, {first_hybrid_k, iterations, hybrid_fit_scale, common_frame_bounds}, options, tick);
 }
 
