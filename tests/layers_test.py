@@ -1,4 +1,5 @@
 """The layers hold: a source includes only the layers below its own, and the library never prints, exits or rolls dice.
+What is compiled for several processors is compiled without fused multiply-add.
 
 usage: layers_test.py SOURCE_ROOT
 """
@@ -94,6 +95,15 @@ def check_quiet(root, path):
             yield f"{path.relative_to(root)}:{number}: the library must not use {found.group().strip(' (')}"
 
 
+def check_rounding(root):
+    build = (root / "CMakeLists.txt").read_text()
+    unfused = re.findall(r"set_source_files_properties\(([^)]*?)PROPERTIES COMPILE_OPTIONS -ffp-contract=off\)", build)
+    for path in sources(root / "src"):
+        name = str(path.relative_to(root))
+        if re.search(r"^IGSP_MULTIVERSION ", path.read_text(), re.MULTILINE) and name not in " ".join(unfused).split():
+            yield f"{name}: IGSP_MULTIVERSION without -ffp-contract=off; add it to CMakeLists.txt"
+
+
 def faults(root):
     for folder in sorted(path for path in (root / "src").iterdir() if path.is_dir()):
         if folder.name not in ALLOWED:
@@ -109,6 +119,7 @@ def faults(root):
     for path in sources(root / "include"):
         yield from check_public_includes(root, path)
         yield from check_quiet(root, path)
+    yield from check_rounding(root)
 
 
 def main():

@@ -8,34 +8,35 @@ namespace igsp {
 namespace {
 
 constexpr std::size_t max_candidates = 1000;   // those that stand out most
-constexpr float min_rotation_cosine = 0.924f;  // of half the angle between two frames' rotations: 45 degrees
-constexpr float min_direction_cosine = 0.94f;  // 20 degrees
+constexpr double min_rotation_cosine = 0.924;  // of half the angle between two frames' rotations: 45 degrees
+constexpr double min_direction_cosine = 0.94;  // 20 degrees
 constexpr double largest_log = 0.405;          // of the factor: 3/2
 constexpr int bins = 81;                       // of 1 %
 constexpr int reach = 2;                       // bins beside the peak that belong to it
 
+// In double precision: in which order Eigen sums up three floats depends on the processor.
 struct Pose {
-  Eigen::Vector3f source, target;
-  Eigen::Quaternionf rotation;
+  Eigen::Vector3d source, target;
+  Eigen::Quaterniond rotation;
 };
 
 std::vector<Pose> best_of(std::span<const Candidate> candidates, PointView source, PointView target) {
   std::vector<Pose> poses;
   for (const Candidate& c : candidates.first(std::min(max_candidates, candidates.size()))) {
-    poses.push_back({source[c.source].cast<float>(), target[c.target].cast<float>(), c.target_from_source});
+    poses.push_back({source[c.source], target[c.target], c.target_from_source.cast<double>()});
   }
   return poses;
 }
 
-std::array<double, bins> votes_of(std::span<const Pose> poses, float min_length) {
+std::array<double, bins> votes_of(std::span<const Pose> poses, double min_length) {
   std::array<double, bins> votes{};
   for (std::size_t i = 0; i < poses.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (std::abs(poses[i].rotation.dot(poses[j].rotation)) < min_rotation_cosine) continue;
-      const Eigen::Vector3f a = poses[i].source - poses[j].source, b = poses[i].target - poses[j].target;
-      const float from = a.norm(), to = b.norm();
+      const Eigen::Vector3d a = poses[i].source - poses[j].source, b = poses[i].target - poses[j].target;
+      const double from = a.norm(), to = b.norm();
       if (from < min_length || to < min_length) continue;
-      const float along = std::max((poses[i].rotation * a).dot(b), (poses[j].rotation * a).dot(b));
+      const double along = std::max((poses[i].rotation * a).dot(b), (poses[j].rotation * a).dot(b));
       if (along < min_direction_cosine * from * to) continue;
       const double at = (std::log(to / from) / largest_log + 1) * 0.5 * bins;
       if (at >= 0 && at < bins) ++votes[static_cast<std::size_t>(at)];
@@ -53,7 +54,7 @@ double sum_around(const std::array<double, bins>& votes, int centre, int radius)
 }  // namespace
 
 RatioPeak ratio_peak(std::span<const Candidate> candidates, PointView source, PointView target, double min_length) {
-  const auto votes = votes_of(best_of(candidates, source, target), static_cast<float>(min_length));
+  const auto votes = votes_of(best_of(candidates, source, target), min_length);
   RatioPeak best;
   for (int centre = reach; centre < bins - reach; ++centre) {
     const double inside = sum_around(votes, centre, reach);

@@ -74,7 +74,8 @@ RangeImage::Sight RangeImage::look_at(const Eigen::Vector3d& point) const {
     offset += Eigen::Vector3f(projected_.x[i], projected_.y[i], projected_.z[i]) - direction;
     ++seen;
   });
-  if (seen < min_seen || offset.norm() > max_offset * aperture_ * seen) return Sight::out_of_view;
+  // In which order Eigen sums up three floats depends on the processor, that of doubles does not.
+  if (seen < min_seen || offset.cast<double>().norm() > max_offset * aperture_ * seen) return Sight::out_of_view;
   return range < nearest - tolerance_ ? Sight::empty : Sight::possible;
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cstring>
 
 #include "core/multiversion.hpp"
 #include "core/parallel.hpp"
@@ -9,8 +10,15 @@
 namespace igsp {
 namespace {
 
-// Points around one cell, relative to the cell's centre.
+// Sums are kept in eight lanes, whatever the width of the machine's vectors, so that every processor adds in the same
+// order and rounds alike. Generic vectors, which the compiler lowers to what there is.
+constexpr std::size_t lanes = 8;
+using Lanes = float __attribute__((vector_size(lanes * sizeof(float))));
+
+// Points around one cell, relative to the cell's centre; filled up to whole lanes with points that no sphere reaches
+// and whose squares are finite.
 struct Neighbourhood {
+  static constexpr float far_away = 1e18f;
   std::vector<float> x, y, z;
   void gather(const PointGrid& grid, const Eigen::Vector3f& centre, float reach) {
     x.clear(), y.clear(), z.clear();
@@ -21,6 +29,8 @@ struct Neighbourhood {
         z.push_back(grid.z[i] - centre.z());
       }
     });
+    const std::size_t whole = (x.size() + lanes - 1) / lanes * lanes;
+    x.resize(whole, far_away), y.resize(whole, far_away), z.resize(whole, far_away);
   }
 };
 
@@ -28,16 +38,25 @@ struct Moments {
   float n, x, y, z, xx, xy, xz, yy, yz, zz;
 };
 
-// Moments of the points within `radius` of the query, about the query (which keeps floats exact enough).
-IGSP_MULTIVERSION Moments sphere_moments(const float* __restrict px, const float* __restrict py,
-                                         const float* __restrict pz, std::size_t size, float qx, float qy, float qz,
-                                         float squared_radius) {
-  float n = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-#pragma omp simd reduction(+ : n, x, y, z, xx, xy, xz, yy, yz, zz)
-  for (std::size_t i = 0; i < size; ++i) {
-    const float dx = px[i] - qx, dy = py[i] - qy, dz = pz[i] - qz;
-    const float inside = dx * dx + dy * dy + dz * dz <= squared_radius ? 1.0f : 0.0f;
-    const float wx = inside * dx, wy = inside * dy, wz = inside * dz;
+inline __attribute__((always_inline)) void load(const float* from, Lanes& to) {
+  std::memcpy(&to, from, sizeof to);
+}
+
+inline __attribute__((always_inline)) float sum_of(const Lanes& v) {
+  return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+}
+
+// Moments of the points within `radius` of the query, about the query (which keeps floats exact enough). `size` is a
+// multiple of `lanes`.
+IGSP_MULTIVERSION Moments sphere_moments(const float* px, const float* py, const float* pz, std::size_t size, float qx,
+                                         float qy, float qz, float squared_radius) {
+  Lanes n{}, x{}, y{}, z{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
+  for (std::size_t i = 0; i < size; i += lanes) {
+    Lanes dx, dy, dz;
+    load(px + i, dx), load(py + i, dy), load(pz + i, dz);
+    dx -= qx, dy -= qy, dz -= qz;
+    const Lanes inside = dx * dx + dy * dy + dz * dz <= squared_radius ? Lanes{} + 1.0f : Lanes{};
+    const Lanes wx = inside * dx, wy = inside * dy, wz = inside * dz;
     n += inside;
     x += wx;
     y += wy;
@@ -49,7 +68,8 @@ IGSP_MULTIVERSION Moments sphere_moments(const float* __restrict px, const float
     yz += wy * dz;
     zz += wz * dz;
   }
-  return {n, x, y, z, xx, xy, xz, yy, yz, zz};
+  return {sum_of(n),  sum_of(x),  sum_of(y),  sum_of(z),  sum_of(xx),
+          sum_of(xy), sum_of(xz), sum_of(yy), sum_of(yz), sum_of(zz)};
 }
 
 Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal_axes(const Moments& m) {
