@@ -42,7 +42,7 @@ void parallel_blocks(std::size_t size, int threads, std::size_t grain, const Bod
 #ifdef __SANITIZE_THREAD__
   // Debian's TBB is not instrumented: the sanitizer would not see its forks and joins and report every one of them.
   // Plain threads show it the same bodies.
-  const std::size_t count = threads == 0 ? std::max(1u, std::thread::hardware_concurrency()) : threads;
+  const std::size_t count = std::min<std::size_t>(size, threads == 0 ? concurrency(0) : threads);  // none is empty
   std::exception_ptr failure;
   std::mutex mutex;
   const auto work = [&](std::size_t begin, std::size_t end) {

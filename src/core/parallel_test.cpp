@@ -46,5 +46,15 @@ TEST(ParallelBlocks, ExceptionsReachTheCaller) {
   }
 }
 
+TEST(ParallelPair, DoesEachOnce) {
+  for (const int threads : {0, 1, 2, 3, 8}) {
+    std::atomic<int> first = 0, second = 0;
+    parallel_pair(
+        threads, [&] { ++first; }, [&] { ++second; });
+    EXPECT_EQ(first, 1) << threads << " threads";
+    EXPECT_EQ(second, 1) << threads << " threads";
+  }
+}
+
 }  // namespace
 }  // namespace igsp

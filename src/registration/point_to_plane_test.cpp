@@ -114,6 +114,22 @@ TEST(PointToPlane, FindsTheTruthFromNearby) {
   }
 }
 
+// The surfaces are new each time, so that the threads ask for normals that are not known yet.
+TEST(PointToPlane, SameBitsForEveryThreadCount) {
+  Random random(11);
+  const Scene scene(12, random.motion(5));
+  const Transformation start = Eigen::AngleAxisd(0.02, random.direction()) * scene.truth;
+  std::vector<Transformation> found;
+  for (const int threads : {1, 2, 4}) {
+    const Surface source = surface_of(scene.source_points), target = surface_of(scene.target_points);
+    PointToPlaneOptions options = options_of(6);
+    options.threads = threads;
+    found.push_back(refine_point_to_plane(source, target, start, options));
+  }
+  EXPECT_EQ(found[1].matrix(), found[0].matrix());
+  EXPECT_EQ(found[2].matrix(), found[0].matrix());
+}
+
 TEST(PointToPlane, LevelledFindsTheYawAndTouchesNoTilt) {
   const Scene scene(7, Transformation(Eigen::Translation3d(3, -2, 1) * Eigen::AngleAxisd(1, Eigen::Vector3d::UnitZ())));
   const Transformation off(Eigen::Translation3d(0.04, 0.02, -0.03) * Eigen::AngleAxisd(0.03, Eigen::Vector3d::UnitZ()));
