@@ -27,7 +27,7 @@ constexpr std::size_t min_pairs = 30;
 // this much at one sigma, without pulling anywhere.
 constexpr double damping = 1.0;  // [voxels, or at the rim of the scan]
 
-// A scan in its own centred frame, lengths in voxels, with all normals known, so that several threads may read it.
+// A scan in its own centred frame, lengths in voxels.
 class SharedSurface {
  public:
   explicit SharedSurface(const Features& features)
@@ -36,12 +36,11 @@ class SharedSurface {
     for (const Eigen::Vector3d& point : points_) centre_ += point / static_cast<double>(points_.size());
     for (const Eigen::Vector3d& point : points_) squared_size_ += (point - centre_).squaredNorm() / points_.size();
     surface_.emplace(points_, PointGrid(points_, 1.0), normal_radius);
-    for (std::size_t i = 0; i < points_.size(); ++i) surface_->normal(i);
   }
   SharedSurface(const SharedSurface&) = delete;
   SharedSurface& operator=(const SharedSurface&) = delete;
 
-  Surface& surface() { return *surface_; }
+  const Surface& surface() const { return *surface_; }
   const Eigen::Vector3d& centre() const { return centre_; }
   double squared_size() const { return squared_size_; }
   std::size_t voxels() const { return voxels_; }  ///< that the pair was registered with, not the finer ones here
@@ -137,7 +136,7 @@ class Bundle {
     // The larger one moves, as it did when the pair was registered.
     const bool exchanged = surfaces_[link.target]->voxels() > surfaces_[link.source]->voxels();
     const std::size_t moving = exchanged ? link.target : link.source, fixed = exchanged ? link.source : link.target;
-    SharedSurface &source = *surfaces_[moving], &target = *surfaces_[fixed];
+    const SharedSurface &source = *surfaces_[moving], &target = *surfaces_[fixed];
     const Transformation pose = poses_[fixed].inverse() * poses_[moving];
     const Linearisation at_pose = linearise_at(source.surface(), target.surface(), pose, radius, max_points);
     RelativeFactor result{moving, fixed, pose, at_pose.centre, Matrix6::Zero(), Vector6::Zero()};

@@ -147,7 +147,7 @@ void fix_tilt(NormalEquations& equations) {
   }
 }
 
-// Steps shrink by a third and more each, so what is left is as small: far below what any scanner resolves in a voxel.
+// Far below what any scanner resolves in a voxel.
 bool is_small(const Vector6& step, double voxel_size) {
   return step.head<3>().norm() < 3e-5 && step.tail<3>().norm() < 3e-4 * voxel_size;
 }
