@@ -4,7 +4,7 @@ jobs := $(shell nproc)
 igsp := build/release/bin/igsp
 demo := build/demo
 
-.PHONY: all build setup demo test deb container docs wheel wheels bench bench-scrambles bench-peers aarch64 profile calibrate paper asan tsan fuzz mutants tidy format install clean
+.PHONY: all build setup demo test deb container docs wheel wheels bench bench-scrambles bench-peers aarch64 compilers profile calibrate paper asan tsan fuzz mutants tidy format install clean
 
 all: build
 
@@ -120,6 +120,17 @@ aarch64: build
 	$(aarch64_run) build/aarch64/bin/igsp_tests --gtest_brief=1 '--gtest_filter=$(aarch64_tests)'
 	$(same_bits) --plain-libm $(igsp) -- qemu-x86_64 -cpu Nehalem $(igsp)
 	$(same_bits) $(igsp) -- $(aarch64_run) build/aarch64/bin/igsp
+
+# The command by other compilers and optimisations: what differs from the release build, as docs/promises.md shows it.
+compilers: setup
+	@scripts/setup.sh clang-14
+	cmake --preset release
+	cmake --build --preset release --target igsp_app
+	set -e; for each in "g++ -O0" "g++ -O2" "clang++-14 -O2"; do echo "== $$each"; set -- $$each; folder=build/compilers/$$1$$2; \
+	  cmake -S . -B $$folder -G Ninja -DCMAKE_BUILD_TYPE=Release -DIGSP_BUILD_TESTS=OFF -DCMAKE_CXX_COMPILER=$$1 \
+	    -DCMAKE_CXX_FLAGS_RELEASE="$$2 -DNDEBUG" >/dev/null; \
+	  cmake --build $$folder --target igsp_app >/dev/null; \
+	  /usr/bin/python3 scripts/same_bits.py $(igsp) -- $$folder/bin/igsp || true; done
 
 # What docs/profile.md shows: instructions a stage, counted by callgrind. Some minutes of one core.
 profile:

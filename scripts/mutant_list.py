@@ -80,6 +80,15 @@ MUTANTS = [
     ("matching/geometric_consistency.cpp", "lengths & long_enough & rotations", "lengths & rotations", "least length"),
     ("matching/geometric_consistency.cpp", "options.max_angle_rad / 2", "options.max_angle_rad", "half angle of a quaternion"),
     ("matching/geometric_consistency.cpp", "limits.length_tolerance * limits.length_tolerance * sum2", "limits.length_tolerance * sum2", "tolerance of lengths"),
+    # Screening of the proposals
+    ("registration/screening.cpp", "match.agreeing >= enough_agreeing &&", "true &&", "a clear winner has many agreeing matches"),
+    ("registration/screening.cpp", "enough_agreement * static_cast<double>(match", "0.0 * static_cast<double>(match", "a clear winner has a large share of them"),
+    ("registration/screening.cpp", "rival_inliers * static_cast<double>(winner_inliers)", "static_cast<double>(winner_inliers)", "half of the winner's inliers make a rival"),
+    ("registration/screening.cpp", "std::max(winner_inliers, batch[i].inliers)", "batch[i].inliers", "the strongest clear winner counts"),
+    ("registration/screening.cpp", "if (is_clear(found[i])) winner", "if (true) winner", "only a clear winner spares the others"),
+    ("registration/screening.cpp", "std::min(size, hypotheses.size() - begin)", "std::min<std::size_t>(1, hypotheses.size() - begin)", "all hypotheses of a batch"),
+    ("registration/screening.cpp", "std::greater(), &Rematch::agreeing", "std::less(), &Rematch::agreeing", "most agreeing matches first"),
+    ("registration/each_pose.hpp", "results[i] = look(poses[i]);", "results[i] = look(poses[begin]);", "each pose is looked into"),
     # Contact and verdict
     ("registration/surface_contact.cpp", "touching = 1.0;", "touching = 4.0;", "what touches"),
     ("registration/surface_contact.cpp", "touching_weight += weight;", "touching_weight += 1.0;", "weights of contact"),

@@ -1,10 +1,11 @@
-"""Whether the command gives the same bits on another processor.
+"""Whether the command gives the same bits on another processor or from another compiler.
 
     python3 scripts/same_bits.py build/release/bin/igsp [--cases CASES.csv] -- qemu-aarch64 ... build/aarch64/bin/igsp
+    python3 scripts/same_bits.py build/release/bin/igsp -- build/compilers/clang/bin/igsp
     python3 scripts/same_bits.py --plain-libm build/release/bin/igsp -- qemu-x86_64 -cpu Nehalem build/release/bin/igsp
 
 Simulates scans with both; registers what the first one simulated with both; compares scans, transformations and reports,
-all but what tells of time. With a list of cases, as `igsp benchmark` reads it, both run the first of each group, and their
+all but what tells of time, and says how far motion and confidence differ at most. With a list of cases, as `igsp benchmark` reads it, both run the first of each group, and their
 rows are compared, too. --plain-libm has the first one use the sine, cosine, ... that glibc has for processors without fused
 multiply-add, which round otherwise: what differs then is of igsp.
 """
@@ -12,6 +13,7 @@ multiply-add, which round otherwise: what differs then is of igsp.
 import argparse
 import csv
 import json
+import math
 import subprocess
 import sys
 import tempfile
@@ -47,9 +49,20 @@ def differing(native: Any, other: Any, path: str = "") -> list[str]:
     return [] if native == other else [f"{path}: {str(native)[:60]} and {str(other)[:60]}"]
 
 
-def told(what: str, lines: list[str]) -> bool:
+def distance(native: dict[str, Any], other: dict[str, Any]) -> str:
+    """How far two reports differ in what counts: translation (in the cloud's unit), entries of the rotation, confidence."""
+    if native["verdict"] != other["verdict"]:
+        return f"{native['verdict']} there {other['verdict']}"
+    rows = list(zip(native["target_from_source"], other["target_from_source"], strict=True))
+    translation = math.dist([a[3] for a, _ in rows[:3]], [b[3] for _, b in rows[:3]])
+    rotation = max(abs(a[k] - b[k]) for a, b in rows[:3] for k in range(3))
+    confidence = abs(native["confidence"] - other["confidence"])
+    return f"translation by {translation:.1g}, rotation by {rotation:.1g}, confidence by {confidence:.1g}"
+
+
+def told(what: str, lines: list[str], by: str = "") -> bool:
     """Prints the outcome; whether both were the same."""
-    print(f"{what}: {'the same bits' if not lines else f'{len(lines)} values differ'}", flush=True)
+    print(f"{what}: {'the same bits' if not lines else f'{len(lines)} values differ'}{by and ': ' + by}", flush=True)
     for line in lines[:10]:
         print(f"  {line}")
     return not lines

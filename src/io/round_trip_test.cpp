@@ -134,7 +134,7 @@ TEST(RoundTrip, FilesLargerThanTheBuffer) {
 TEST(RoundTrip, AnEmptyCloudIsAFileToo) {
   const TemporaryFolder folder;
   for (const auto& [format, name] : formats) {
-    write_points(folder / name, {}, {.format = format});
+    write_points(folder / name, Points(), {.format = format});
     EXPECT_TRUE(read_points(folder / name).points.empty()) << name;
   }
 }

@@ -14,27 +14,40 @@ inline Options frame_options() {
   return options;
 }
 
+/// What of a bumpy surface both clouds hold, in units of length.
+struct Extent {
+  double half_side = 4;
+  double common = 8;  ///< width of the strip that both see, all of it by default
+};
+
 /// A bumpy surface and a moved resampling of it.
 struct Scene {
   Transformation truth;
   Features source, target;
   PreparedCloud prepared_source, prepared_target;
 
-  explicit Scene(std::uint64_t seed) : Scene(Random(seed)) {}
+  explicit Scene(std::uint64_t seed, Extent extent = {}) : Scene(Random(seed), extent) {}
 
   CommonFrame frame(int threads = 1) const {
     return CommonFrame(prepared_source, prepared_target, frame_options().descriptor.radius * 0.1, threads);
   }
 
  private:
-  explicit Scene(Random random) : Scene(random, BumpySurface(random), random.motion(3)) {}
-  Scene(Random& random, const BumpySurface& shape, const Transformation& motion)
+  explicit Scene(Random random, Extent extent) : Scene(random, BumpySurface(random), random.motion(3), extent) {}
+  Scene(Random& random, const BumpySurface& shape, const Transformation& motion, Extent extent)
       : truth(motion),
-        source(extract_features(shape.sample(random, 20000, 4), frame_options())),
-        target(extract_features(moved(motion, shape.sample(random, 20000, 4)), frame_options())),
+        source(extract_features(seen_from(-1, shape, random, extent), frame_options())),
+        target(extract_features(moved(motion, seen_from(1, shape, random, extent)), frame_options())),
         prepared_source(source),
         prepared_target(target) {
     truth.translation() += truth.linear() * source.origin - target.origin;  // between the centred clouds
+  }
+  /// Without what lies too far on the other side.
+  static Points seen_from(double side, const BumpySurface& shape, Random& random, Extent extent) {
+    const auto points = static_cast<std::size_t>(1250 * extent.half_side * extent.half_side);
+    Points seen = shape.sample(random, points, extent.half_side);
+    std::erase_if(seen, [&](const Eigen::Vector3d& p) { return side * p.x() < -0.5 * extent.common; });
+    return seen;
   }
 };
 

@@ -46,5 +46,34 @@ TEST(Screening, AClearWinnerSparesAllThatCannotBeItsRivals) {
   EXPECT_EQ(screen(other, proposals(scene, 0, 20, 10), Options(), silent).size(), proposed);
 }
 
+TEST(Screening, TheStrongestOfSeveralClearWinnersDecides) {
+  const Scene scene(4);
+  CommonFrame frame = scene.frame();
+  std::vector<Hypothesis> hypotheses = proposals(scene, 0, 20, 7);
+  hypotheses[1] = {scene.truth, 12};
+  EXPECT_EQ(screen(frame, hypotheses, Options(), silent).size(), 2u);
+}
+
+TEST(Screening, FewMatchesAreNoClearWinnerHoweverManyOfThemAgree) {
+  const Scene scene(4, {.half_side = 0.6});
+  CommonFrame frame = scene.frame();
+  const std::vector<Rematch> screened = screen(frame, proposals(scene, 0, 20, 9), Options(), silent);
+  EXPECT_EQ(screened.size(), proposed);
+  const Rematch& best = screened.front();
+  EXPECT_TRUE(best.agreeing > 5 && best.agreeing < 15 && best.agreeing >= 0.7 * best.matches.size())
+      << best.agreeing << " of " << best.matches.size();
+}
+
+TEST(Screening, ManyMatchesAreNoClearWinnerWhereFewOfThemAgree) {
+  const Scene scene(4, {.half_side = 4, .common = 2});
+  CommonFrame frame = scene.frame();
+  const std::vector<Rematch> screened = screen(frame, proposals(scene, 0, 20, 9), Options(), silent);
+  EXPECT_EQ(screened.size(), proposed);
+  const Rematch& best = screened.front();
+  EXPECT_TRUE(is_right(scene, best));
+  EXPECT_TRUE(best.agreeing > 15 && best.agreeing < 0.5 * best.matches.size())
+      << best.agreeing << " of " << best.matches.size();
+}
+
 }  // namespace
 }  // namespace igsp

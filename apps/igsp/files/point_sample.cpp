@@ -50,8 +50,7 @@ void PointSample::add(PointView chunk) {
 void PointSample::shrink() {
   for (Eigen::Vector3d& point : kept_) point = without_signed_zeros(point);
   std::ranges::sort(kept_, comes_before);
-  const auto doubles = std::ranges::unique(kept_);
-  kept_.erase(doubles.begin(), doubles.end());
+  kept_.erase(std::unique(kept_.begin(), kept_.end()), kept_.end());  // not of std::ranges, which Clang 14 cannot read
   while (kept_.size() > limit_ / 2 && halvings_ < hash_bits - 1) {
     ++halvings_;
     std::erase_if(kept_, [this](const Eigen::Vector3d& point) { return !is_in(point); });
