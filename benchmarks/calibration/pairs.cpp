@@ -127,6 +127,7 @@ void move(SimulatedScan& scan, Random& random) {
   motion.linear() = random.rotation();
   motion.translation() = 20.0 * random.direction();
   for (Eigen::Vector3d& point : scan.points) point = motion * point;
+  if (scan.viewpoint) scan.viewpoint = motion * *scan.viewpoint;
   scan.world_from_scanner = scan.world_from_scanner * motion.inverse();
 }
 

@@ -84,6 +84,7 @@ class Bundle {
 
   void run() {
     if (links_.empty()) return;
+    loss_scales_.assign(links_.size(), 0.0);
     for (int k = 0; k < max_steps; ++k) {
       const auto steps = linearise(k == 0 ? first_radius : search_radius).solve();
       if (!steps || apply_steps(*steps, centres_, poses_) < small_step) break;
@@ -124,7 +125,7 @@ class Bundle {
   PoseEquations linearise(double radius) {
     std::vector<RelativeFactor> factors(links_.size());
     parallel_blocks(links_.size(), threads_, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t l = begin; l < end; ++l) factors[l] = factor(*links_[l], radius);
+      for (std::size_t l = begin; l < end; ++l) factors[l] = factor(*links_[l], radius, loss_scales_[l]);
     });
     PoseEquations equations(centres_, is_free_, options_.pair.degrees_of_freedom);
     for (const RelativeFactor& one : factors) equations.add(one);
@@ -132,13 +133,16 @@ class Bundle {
     return equations;
   }
 
-  RelativeFactor factor(const NetworkLink& link, double radius) {
+  // The loss follows the residuals of the step before, as it does where a pair is refined.
+  RelativeFactor factor(const NetworkLink& link, double radius, double& loss_scale) {
     // The larger one moves, as it did when the pair was registered.
     const bool exchanged = surfaces_[link.target]->voxels() > surfaces_[link.source]->voxels();
     const std::size_t moving = exchanged ? link.target : link.source, fixed = exchanged ? link.source : link.target;
     const SharedSurface &source = *surfaces_[moving], &target = *surfaces_[fixed];
     const Transformation pose = poses_[fixed].inverse() * poses_[moving];
-    const Linearisation at_pose = linearise_at(source.surface(), target.surface(), pose, radius, max_points);
+    const Linearisation at_pose =
+        linearise_at(source.surface(), target.surface(), pose, radius, max_points, 1, loss_scale);
+    loss_scale = loss_scale_of(at_pose.residual_variance, search_radius, 1);
     RelativeFactor result{moving, fixed, pose, at_pose.centre, Matrix6::Zero(), Vector6::Zero()};
     if (at_pose.pairs >= min_pairs && at_pose.residual_variance > 0) {
       result.information = at_pose.hessian / at_pose.residual_variance;
@@ -177,6 +181,7 @@ class Bundle {
   const NetworkOptions& options_;
   int threads_;
   std::vector<const NetworkLink*> links_;
+  std::vector<double> loss_scales_;  ///< by link, [voxels]; 0: not known yet
   std::vector<const ControlPose*> control_;
   std::vector<Transformation> poses_;
   std::vector<bool> is_free_;

@@ -27,6 +27,9 @@ constexpr std::array<double, 6> coarse_radii{3, 3, 2, 2, 1.5, 1.5};
 // The first ones only after an answer at 8 v or 4 v, which may be that far off.
 constexpr std::array<double, 9> fine_radii{12, 8, 6, 4, 3, 2, 1.5, 1.5, 1};
 constexpr std::array<std::size_t, 4> first_fine_radius{4, 4, 2, 0};  // by rung
+// Found at 8 v or 4 v, a pose is refined there first: from further off than a voxel of 4 v the fine surfaces of scan
+// lines do not find each other.
+constexpr std::size_t finest_settled = 2;  // rung
 constexpr std::size_t coarse_points = 1500;
 constexpr std::size_t early_fine_points = 2000;
 constexpr std::size_t fine_points = 8000;
@@ -128,14 +131,13 @@ void finish(ScaleLadder& scales, const Options& options, StageClock& clock, Sear
 // A few iterations of the loop and a short refinement for each, then the question that the verdict asks as well: how
 // well do the clouds agree at this pose? Best first.
 std::vector<Rival> rank(CommonFrame& frame, std::span<const Transformation> candidates, const Options& options) {
-  const PreparedCloud &source_cloud = frame.source(), &target_cloud = frame.target();
-  const Surface source(source_cloud.features.points, source_cloud.grid, source_cloud.features.normals);
-  const Surface target(target_cloud.features.points, target_cloud.grid, target_cloud.features.normals);
+  const Surface source = surface_of(frame.source()), target = surface_of(frame.target());
+  const double v = frame.target().features.voxel_size;
   const Options alone = in_one_thread(options);
   const std::vector<Transformation> poses =
       look_into_each<Transformation>(frame, candidates, [&](const Transformation& candidate) {
         const LoopOutcome loop = hybrid_loop(frame, candidate, first_iterations, alone);
-        return settle(source, target, loop.target_from_source, target_cloud.features.voxel_size, alone);
+        return settle(source, target, loop.target_from_source, v, alone);
       });
   std::vector<Rival> ranked = look_into_each<Rival>(frame, poses, [&](const Transformation& pose) {
     return Rival{pose, assess_pose(frame, pose, 1)};
@@ -213,9 +215,14 @@ bool can_tell(std::size_t rung, const CommonFrame& frame) {
 
 Transformation refined(ScaleLadder& scales, std::size_t rung, const Transformation& target_from_source,
                        const Options& options) {
+  Transformation pose = target_from_source;
+  for (std::size_t k = rung; k >= finest_settled; --k) {
+    CommonFrame& frame = scales.frame(k);
+    pose = settle(surface_of(frame.source()), surface_of(frame.target()), pose, scales.voxel_size(k), options);
+  }
   FineSurfaces& surfaces = scales.fine_surfaces();
   const auto radii = std::span(fine_radii).subspan(first_fine_radius[rung]);
-  return refine_point_to_plane(surfaces.source, surfaces.target, target_from_source,
+  return refine_point_to_plane(surfaces.source, surfaces.target, pose,
                                {early_fine_points, fine_points, radii, max_last_steps, scales.voxel_size(0),
                                 options.degrees_of_freedom, options.threads});
 }

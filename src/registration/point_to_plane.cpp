@@ -15,6 +15,8 @@ namespace {
 constexpr double min_normal_cosine = 0.7;
 constexpr std::size_t min_pairs = 30;
 constexpr double max_growth = 0.1;  // of one step
+constexpr double loss_sigmas = 3.0;
+constexpr double least_loss_scale = 0.15;  // voxels
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -30,6 +32,7 @@ struct NormalEquations {
   Vector7 gradient = Vector7::Zero();
   std::size_t pairs = 0;
   double weight_sum = 0, weighted_squares = 0;
+  double residual_variance() const { return weight_sum > 0 ? weighted_squares / weight_sum : 0.0; }
   Eigen::Vector3d weighted_places = Eigen::Vector3d::Zero();
 
   // p as moved by the current pose, q of the target, n the normal of both.
@@ -110,10 +113,11 @@ void visit_pairs(const Surface& source, const Surface& target, const Transformat
 
 // Summed up in blocks, and these in their order: the same bits for every number of threads.
 NormalEquations linearise(const Surface& source, const Surface& target, const Transformation& pose, double scale,
-                          double radius, std::size_t max_points, int threads, Partners* partners = nullptr) {
+                          double radius, double loss_scale, std::size_t max_points, int threads,
+                          Partners* partners = nullptr) {
   constexpr std::size_t block = 512;
   const Sample sample(source, max_points);
-  const NormalEquations none{pose.translation(), 0.5 * radius};
+  const NormalEquations none{pose.translation(), loss_scale};
   std::vector<NormalEquations> parts((sample.size + block - 1) / block, none);
   parallel_blocks(parts.size(), threads, 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
@@ -175,14 +179,17 @@ Transformation refine_point_to_plane(const Surface& source, const Surface& targe
                                      const PointToPlaneOptions& options) {
   Transformation pose = initial;
   Partners partners(source.size(), -1);
+  double loss_scale = 0;
   const std::size_t steps = options.radii.size() + options.max_last_steps;
   for (std::size_t k = 0; k < steps; ++k) {
     const bool is_early = k + 1 < options.radii.size();
     const double radius = options.radii[is_early ? k : options.radii.size() - 1] * options.voxel_size;
     NormalEquations equations =
-        linearise(source, target, pose, 1, radius, is_early ? options.early_points : options.max_points,
-                  options.threads, &partners);
+        linearise(source, target, pose, 1, radius, is_early || k == 0 ? 0.5 * radius : loss_scale,
+                  is_early ? options.early_points : options.max_points, options.threads, &partners);
     if (equations.pairs < min_pairs) break;
+    loss_scale =
+        loss_scale_of(equations.residual_variance(), options.radii.back() * options.voxel_size, options.voxel_size);
     if (options.degrees_of_freedom == 4) fix_tilt(equations);
     const Eigen::LDLT<Matrix6> solver(equations.information.topLeftCorner<6, 6>());
     if (!is_solvable(solver)) break;
@@ -198,8 +205,9 @@ ScaleFit fit_scale(const Surface& source, const Surface& target, const Transform
                    const PointToPlaneOptions& options) {
   ScaleFit fit{1, std::numeric_limits<double>::infinity(), initial};
   for (const double radius : options.radii) {
-    NormalEquations equations = linearise(source, target, fit.target_from_source, fit.factor,
-                                          radius * options.voxel_size, options.max_points, options.threads);
+    NormalEquations equations =
+        linearise(source, target, fit.target_from_source, fit.factor, radius * options.voxel_size,
+                  0.5 * radius * options.voxel_size, options.max_points, options.threads);
     if (equations.pairs < min_pairs) break;
     if (options.degrees_of_freedom == 4) fix_tilt(equations);
     const Eigen::LDLT<Matrix7> solver(equations.information);
@@ -211,18 +219,22 @@ ScaleFit fit_scale(const Surface& source, const Surface& target, const Transform
     pose = motion(step.head<6>(), equations.centre) * pose;
     pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
     fit.factor *= growth;
-    const double variance = equations.weighted_squares / equations.weight_sum;
-    fit.sigma = fit.factor * std::sqrt(variance * solver.solve(Vector7::Unit(6))[6]);
+    fit.sigma = fit.factor * std::sqrt(equations.residual_variance() * solver.solve(Vector7::Unit(6))[6]);
   }
   return fit;
 }
 
 Linearisation linearise_at(const Surface& source, const Surface& target, const Transformation& pose, double radius,
-                           std::size_t max_points, int threads) {
-  const NormalEquations equations = linearise(source, target, pose, 1, radius, max_points, threads);
-  const double variance = equations.weight_sum > 0 ? equations.weighted_squares / equations.weight_sum : 0.0;
-  return {equations.centre, equations.information.topLeftCorner<6, 6>(), equations.gradient.head<6>(), variance,
-          equations.pairs};
+                           std::size_t max_points, int threads, double loss_scale) {
+  const NormalEquations equations =
+      linearise(source, target, pose, 1, radius, loss_scale > 0 ? loss_scale : 0.5 * radius, max_points, threads);
+  return {equations.centre, equations.information.topLeftCorner<6, 6>(), equations.gradient.head<6>(),
+          equations.residual_variance(), equations.pairs};
+}
+
+double loss_scale_of(double residual_variance, double radius, double voxel_size) {
+  const double most = 0.5 * radius;
+  return std::clamp(loss_sigmas * std::sqrt(residual_variance), std::min(least_loss_scale * voxel_size, most), most);
 }
 
 std::vector<double> shifts_along_normals(const Surface& source, const Surface& target, const Transformation& pose,

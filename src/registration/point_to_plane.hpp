@@ -52,8 +52,8 @@ struct PointToPlaneOptions {
 
 /// Fine registration: every step pairs points of the source with their nearest point of the target within the radius
 /// whose normal agrees, and minimises the distances along the sum of both normals (Rusinkiewicz 2019, symmetric ICP)
-/// under the Geman-McClure loss at half the radius. Ends early where a step finds too few pairs or a free direction.
-/// Returns target_from_source.
+/// under the Geman-McClure loss at half the radius, at the last radius at loss_scale_of the step before. Ends early
+/// where a step finds too few pairs or a free direction. Returns target_from_source.
 Transformation refine_point_to_plane(const Surface& source, const Surface& target, const Transformation& initial,
                                      const PointToPlaneOptions& options);
 
@@ -78,8 +78,14 @@ struct Linearisation {
   double residual_variance = 0;  ///< [units of the cloud ^ 2]
   std::size_t pairs = 0;
 };
+/// `loss_scale` of the Geman-McClure loss; 0: half the radius.
 Linearisation linearise_at(const Surface& source, const Surface& target, const Transformation& pose, double radius,
-                           std::size_t max_points, int threads = 1);
+                           std::size_t max_points, int threads = 1, double loss_scale = 0);
+
+/// Of the Geman-McClure loss where residuals have this variance: three sigmas, but no less than what voxels resolve and
+/// no more than half the radius. Surfaces that lie on each other well take no notice of what is only near them, such as
+/// the other side of a trunk.
+double loss_scale_of(double residual_variance, double radius, double voxel_size);
 
 /// A motion to first order: p moves by rotation x (p - centre) + translation.
 struct SmallMotion {

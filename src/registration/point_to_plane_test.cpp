@@ -143,6 +143,58 @@ TEST(PointToPlane, LevelledFindsTheYawAndTouchesNoTilt) {
   EXPECT_LT((kept.linear().row(2) - tilted.linear().row(2)).norm(), 1e-12) << "what a yaw leaves alone";
 }
 
+// A board above bumpy ground, thinner than the search is wide: each cloud has seen one side of it. The sides are as
+// near as what is matched, but the ground says that they are not the same.
+TEST(PointToPlane, TheOtherSideOfAThinThingPullsLittle) {
+  Random random(21);
+  const BumpySurface ground(random);
+  Points source_points = ground.sample(random, 4000, 2), target_points = source_points;
+  const double thickness = 0.5 * voxel_size;
+  for (int i = 0; i < 300; ++i) {
+    source_points.emplace_back(0, random.uniform(-1, 1), random.uniform(3, 4));
+    target_points.emplace_back(thickness, random.uniform(-1, 1), random.uniform(3, 4));
+  }
+  const Surface source = surface_of(source_points), target = surface_of(target_points);
+  PointToPlaneOptions options = options_of(6);
+  options.early_points = options.max_points = source_points.size();
+  const Transformation found = refine_point_to_plane(source, target, Transformation::Identity(), options);
+  EXPECT_LT(found.translation().norm(), 0.02 * thickness);
+}
+
+// Lines of a scanner with few of them, those of one cloud between those of the other: the surfaces are the same, no
+// line is.
+TEST(PointToPlane, ScanLinesFindTheSurfaceAndNotEachOther) {
+  Random random(22);
+  const BumpySurface ground(random);
+  const auto lines = [&](double first) {
+    Points points;
+    for (double y = first; y < 2; y += 4 * voxel_size) {
+      for (double x = -2; x < 2; x += 0.3 * voxel_size) points.emplace_back(x, y, ground.height_at(x, y));
+    }
+    return points;
+  };
+  const Points source_points = lines(-2), target_points = lines(-2 + 2 * voxel_size);
+  const auto surface_of_lines = [](const Points& points) {
+    return Surface(points, PointGrid(points, voxel_size), 1.5 * voxel_size);
+  };
+  const Surface source = surface_of_lines(source_points), target = surface_of_lines(target_points);
+  const Transformation off(Eigen::Translation3d(random.in_cube(0.05)) * Eigen::AngleAxisd(0.02, random.direction()));
+  PointToPlaneOptions options = options_of(6);
+  constexpr std::array<double, 6> wide{6, 5, 4, 3, 3, 3};
+  options.radii = wide;
+  const Transformation found = refine_point_to_plane(source, target, off, options);
+  const PoseError error = pose_error(found, Transformation::Identity(), Eigen::Vector3d::Zero());
+  EXPECT_LT(error.rotation_rad, 0.01);
+  EXPECT_LT(error.centroid_displacement, 0.2 * voxel_size);
+}
+
+TEST(PointToPlane, TheLossFollowsTheResidualsWithinWhatVoxelsAndRadiusAllow) {
+  EXPECT_DOUBLE_EQ(loss_scale_of(0.1 * 0.1, 2, 1), 0.3);
+  EXPECT_DOUBLE_EQ(loss_scale_of(0, 2, 1), 0.15);
+  EXPECT_DOUBLE_EQ(loss_scale_of(5, 2, 1), 1);
+  EXPECT_DOUBLE_EQ(loss_scale_of(5, 0.1, 1), 0.05) << "a radius below what voxels resolve";
+}
+
 // Growth about any place but the centre of the pairs would move a cloud that stands far from its origin away.
 TEST(PointToPlane, FindsTheScaleOfACloudFarFromItsOrigin) {
   Random random(9);

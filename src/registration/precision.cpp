@@ -57,6 +57,19 @@ Transformation motion_about(const Eigen::Vector3d& centre, const Vector6& motion
   return result;
 }
 
+// As in the last steps of the refinement, whose loss follows the residuals.
+Linearisation linearise_as_refined(const FineSurfaces& surfaces, const Transformation& target_from_source) {
+  const double radius = fine_search_radius * surfaces.voxel_size;
+  double loss_scale = 0;
+  Linearisation at_pose;
+  for (int k = 0; k < 3; ++k) {
+    at_pose = linearise_at(surfaces.source, surfaces.target, target_from_source, radius, max_fine_points,
+                           surfaces.threads, loss_scale);
+    loss_scale = loss_scale_of(at_pose.residual_variance, radius, surfaces.voxel_size);
+  }
+  return at_pose;
+}
+
 // Of at least one value.
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -98,9 +111,7 @@ FineSurfaces::FineSurfaces(const Features& source_features, const Features& targ
       threads(number_of_threads) {}
 
 Precision precision_at(const FineSurfaces& surfaces, const Transformation& target_from_source, int degrees_of_freedom) {
-  const Linearisation at_pose =
-      linearise_at(surfaces.source, surfaces.target, target_from_source, fine_search_radius * surfaces.voxel_size,
-                   max_fine_points, surfaces.threads);
+  const Linearisation at_pose = linearise_as_refined(surfaces, target_from_source);
   Precision precision;
   precision.centre = at_pose.centre;
   precision.inlier_rmse = std::sqrt(at_pose.residual_variance);
@@ -130,8 +141,7 @@ std::vector<FreeDirection> free_directions(const PreparedCloud& moved, const Pre
                                            const Transformation& fixed_from_moved, int threads) {
   const double v = fixed.features.voxel_size;
   const double size = size_of(moved.features.points);
-  const Surface moved_surface(moved.features.points, moved.grid, moved.features.normals);
-  const Surface fixed_surface(fixed.features.points, fixed.grid, fixed.features.normals);
+  const Surface moved_surface = surface_of(moved), fixed_surface = surface_of(fixed);
   const Linearisation at_pose =
       linearise_at(moved_surface, fixed_surface, fixed_from_moved, search_radius * v, max_points, threads);
   if (at_pose.pairs == 0 || !(size > 0)) return {};

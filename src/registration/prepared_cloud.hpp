@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "igsp/features.hpp"
+#include "registration/point_to_plane.hpp"
 #include "registration/range_image.hpp"
 #include "spatial/point_grid.hpp"
 
@@ -23,5 +24,10 @@ struct PreparedCloud {
   Points keypoints;                       ///< positions
   std::optional<RangeImage> range_image;  ///< where the viewpoint is known
 };
+
+/// Its voxels, with the normals of its features.
+inline Surface surface_of(const PreparedCloud& cloud) {
+  return Surface(cloud.features.points, cloud.grid, cloud.features.normals);
+}
 
 }  // namespace igsp

@@ -39,6 +39,10 @@ double share_of(std::size_t covered, std::size_t places) {
 
 }  // namespace
 
+double SurfaceOverlap::share() const {
+  return share_of(covered, places);
+}
+
 SurfaceContact surface_contact(const PreparedCloud& moved, const PreparedCloud& fixed,
                                const Transformation& fixed_from_moved) {
   const double v = fixed.features.voxel_size;
@@ -62,12 +66,16 @@ SurfaceContact surface_contact(const PreparedCloud& moved, const PreparedCloud& 
   return contact;
 }
 
-double overlap_of(PointView moved, const Surface& fixed, double voxel_size, const Transformation& fixed_from_moved) {
-  std::size_t covered = 0;
-  const std::size_t places = visit_places(
+SurfaceOverlap overlap_of(PointView moved, const Surface& fixed, double voxel_size,
+                          const Transformation& fixed_from_moved) {
+  SurfaceOverlap overlap;
+  overlap.places = visit_places(
       moved, fixed.points(), fixed.grid(), voxel_size, fixed_from_moved, [&](std::size_t j) { return fixed.normal(j); },
-      [&](std::size_t, double normal) { covered += normal < on_surface * voxel_size; });
-  return share_of(covered, places);
+      [&](std::size_t, double normal) {
+        ++overlap.met;
+        overlap.covered += normal < on_surface * voxel_size;
+      });
+  return overlap;
 }
 
 }  // namespace igsp

@@ -94,6 +94,22 @@ void analyse(const Moments& m, std::uint32_t point, LocalPca& pca) {
   pca.normals[point] = solver.eigenvectors().col(0).cast<float>();
 }
 
+// Fewer points, or points along a line, have no normal: so it is within the lines of a scanner that has few of them.
+constexpr int most_doublings = 3;
+constexpr float fewest_of_a_surface = 5;
+constexpr double most_of_a_line = 0.05;  // l2 / l1
+
+Moments moments_around(const PointGrid& grid, const Eigen::Vector3f& place, float radius) {
+  Moments m{};
+  grid.visit_sphere(place, radius, [&](std::uint32_t i, float) {
+    const float dx = grid.x[i] - place.x(), dy = grid.y[i] - place.y(), dz = grid.z[i] - place.z();
+    m.n += 1;
+    m.x += dx, m.y += dy, m.z += dz;
+    m.xx += dx * dx, m.xy += dx * dy, m.xz += dx * dz, m.yy += dy * dy, m.yz += dy * dz, m.zz += dz * dz;
+  });
+  return m;
+}
+
 }  // namespace
 
 LocalPca local_pca(const PointGrid& grid, double radius, int threads, const std::function<void(double)>& tick) {
@@ -137,14 +153,15 @@ LocalPca local_pca(const PointGrid& grid, double radius, int threads, const std:
 }
 
 Eigen::Vector3d local_normal(const PointGrid& grid, const Eigen::Vector3f& place, double radius) {
-  Moments m{};
-  grid.visit_sphere(place, static_cast<float>(radius), [&](std::uint32_t i, float) {
-    const float dx = grid.x[i] - place.x(), dy = grid.y[i] - place.y(), dz = grid.z[i] - place.z();
-    m.n += 1;
-    m.x += dx, m.y += dy, m.z += dz;
-    m.xx += dx * dx, m.xy += dx * dy, m.xz += dx * dz, m.yy += dy * dy, m.yz += dy * dz, m.zz += dz * dz;
-  });
-  return m.n < 3 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d(principal_axes(m).eigenvectors().col(0));
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  for (int k = 0; k <= most_doublings; ++k, radius *= 2) {
+    const Moments m = moments_around(grid, place, static_cast<float>(radius));
+    if (m.n < 3) continue;
+    const auto axes = principal_axes(m);
+    normal = axes.eigenvectors().col(0);
+    if (m.n >= fewest_of_a_surface && axes.eigenvalues()[1] > most_of_a_line * axes.eigenvalues()[2]) break;
+  }
+  return normal;
 }
 
 }  // namespace igsp

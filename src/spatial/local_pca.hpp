@@ -20,7 +20,8 @@ struct LocalPca {
 /// `tick(share done)` is called now and then on the calling thread and may throw.
 LocalPca local_pca(const PointGrid& grid, double radius, int threads, const std::function<void(double)>& tick = {});
 
-/// Normal of one place from the points within `radius` of it: eigenvector of l3, unit, sign arbitrary.
+/// Normal of one place from the points within `radius` of it: eigenvector of l3, unit, sign arbitrary. Where they are too
+/// few for a surface, or lie along a line, from those within 2, 4 or 8 times the radius.
 Eigen::Vector3d local_normal(const PointGrid& grid, const Eigen::Vector3f& place, double radius);
 
 }  // namespace igsp

@@ -173,6 +173,30 @@ TEST(LocalNormal, IsThatOfTheSphereAroundAnyPlace) {
   EXPECT_NEAR(local_normal(grid, Eigen::Vector3f(100, 100, 100), 0.8).norm(), 1, 1e-6);
 }
 
+// Within one scan line every normal across it would fit.
+TEST(LocalNormal, OfScanLinesIsThatOfTheSurfaceTheyLieOn) {
+  Random random(10);
+  const Eigen::Vector3d normal = random.direction(), along = normal.unitOrthogonal(), across = normal.cross(along);
+  Points points;
+  for (int line = -5; line <= 5; ++line) {
+    for (int i = -60; i <= 60; ++i) points.push_back(0.5 * line * across + 0.05 * i * along);
+  }
+  const PointGrid grid(points, 0.2);
+  for (const Eigen::Vector3d& point : points) {
+    ASSERT_GT(std::abs(local_normal(grid, point.cast<float>(), 0.3).dot(normal)), 0.999) << point.transpose();
+  }
+}
+
+// Nothing but one line within reach: some normal of it, and an end to the search.
+TEST(LocalNormal, OfOneLineLiesAcrossIt) {
+  Points points;
+  for (int i = 0; i < 50; ++i) points.emplace_back(0.1 * i, 0, 0);
+  const PointGrid grid(points, 0.2);
+  const Eigen::Vector3d normal = local_normal(grid, points[20].cast<float>(), 0.3);
+  EXPECT_NEAR(normal.norm(), 1, 1e-6);
+  EXPECT_NEAR(normal.x(), 0, 1e-3);
+}
+
 TEST(LocalPca, OfNoPointsIsEmpty) {
   EXPECT_TRUE(pca_of({}, 1.0).curvature.empty());
 }
