@@ -346,6 +346,13 @@ class Align(CommandTest):
         self.assertIn("dropped 1 of", self.igsp("align", source, self.target).stderr)
         self.assertEqual(self.igsp("align", source, self.target, "--quiet").stderr, "")
 
+    def test_one_of_several_processors_is_enough(self):
+        """As in a container that may use one: threads for the others are not asked for."""
+        one = {min(os.sched_getaffinity(0))}
+        run = subprocess.run([IGSP, "align", self.source, self.target, "--initial", self.truth, "--quiet"], cwd=self.folder,
+                             capture_output=True, text=True, preexec_fn=lambda: os.sched_setaffinity(0, one))
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
+
 
 class OptionsOfTheCommand(CommandTest):
     def used(self, *arguments):

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <vector>
 #else
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #endif
@@ -16,9 +17,13 @@
 
 namespace igsp {
 
-/// How many threads work for an option of so many (0: as many as processors).
+/// How many threads work for an option of so many (0: as many as processors that the process may use).
 inline std::size_t concurrency(int threads) {
+#ifdef __SANITIZE_THREAD__
   static const std::size_t processors = std::max(1u, std::thread::hardware_concurrency());  // asks the file system
+#else
+  static const std::size_t processors = static_cast<std::size_t>(tbb::info::default_concurrency());
+#endif
   return threads == 0 ? processors : std::min<std::size_t>(threads, processors);
 }
 

@@ -152,9 +152,9 @@ RowSource open_pcd_rows(InputFile& file) {
     rows.next = compressed_rows(file, header, packed);
   }
   for (std::size_t i = rows.fields.size(); i-- > 0;) {
-    const bool colours =
-        rows.fields[i].type == ScalarType::uint32 && (rows.fields[i].name == "rgb" || rows.fields[i].name == "rgba");
-    if (colours) rows = unpacked(std::move(rows), i, rows.fields[i].name == "rgba");
+    const bool alpha = rows.fields[i].name == "rgba";  // before the rows are moved away
+    const bool colours = rows.fields[i].type == ScalarType::uint32 && (alpha || rows.fields[i].name == "rgb");
+    if (colours) rows = unpacked(std::move(rows), i, alpha);
   }
   return rows;
 }

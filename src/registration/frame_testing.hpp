@@ -33,8 +33,9 @@ struct Scene {
   }
 
  private:
-  explicit Scene(Random random, Extent extent) : Scene(random, BumpySurface(random), random.motion(3), extent) {}
-  Scene(Random& random, const BumpySurface& shape, const Transformation& motion, Extent extent)
+  // Braces: in this order, whatever the compiler.
+  explicit Scene(Random random, Extent extent) : Scene{random, random.motion(3), BumpySurface(random), extent} {}
+  Scene(Random& random, const Transformation& motion, const BumpySurface& shape, Extent extent)
       : truth(motion),
         source(extract_features(seen_from(-1, shape, random, extent), frame_options())),
         target(extract_features(moved(motion, seen_from(1, shape, random, extent)), frame_options())),
