@@ -47,6 +47,31 @@ TEST(HardScenes, SquareRoomIsRefusedOrNamesItsRunnerUp) {
   }
 }
 
+// What a lidar of 16 lines sees of a scene, of all that a terrestrial scanner does: every 2 degrees 0.2 of them.
+Points in_sixteen_lines(const Points& points) {
+  constexpr double step = 2, lowest = -15, width = 0.2;
+  Points seen;
+  for (const Eigen::Vector3d& point : points) {
+    const double elevation = std::atan2(point.z(), point.head<2>().norm()) * 180 / EIGEN_PI;
+    const double line = std::round((elevation - lowest) / step);
+    if (line >= 0 && line < 16 && std::abs(elevation - lowest - step * line) < 0.5 * width) seen.push_back(point);
+  }
+  return seen;
+}
+
+// Lines of one scan lie between those of the other: no voxel of a line's width has a surface, or is met.
+TEST(HardScenes, SixteenLinesOfAParkAreRegisteredToAFractionOfAVoxel) {
+  for (const std::uint64_t seed : {4, 7, 8, 12}) {
+    SCOPED_TRACE(seed);
+    Pair pair = testing::simulated_pair("park", 400000, 0, seed);
+    pair.source = in_sixteen_lines(pair.source);
+    pair.target = in_sixteen_lines(pair.target);
+    const Result result = align(pair.source, pair.target);
+    EXPECT_TRUE(result.registered) << result.confidence << ": " << result.reason;
+    EXPECT_LT(disagreement(result.target_from_source, pair.truth, pair.source), 0.4 * result.voxel_size);
+  }
+}
+
 TEST(HardScenes, RepetitiveCorridorIsNeverWrong) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     SCOPED_TRACE(seed);

@@ -61,7 +61,8 @@ struct FreeDirection {
   std::string description;             ///< such as "translation along (1.00, 0.00, 0.00)"
 };
 
-/// How well the surfaces fix the transformation, from the residuals of the fine registration.
+/// How well the surfaces fix the transformation, from the residuals of the fine registration; those of one patch of
+/// surface count as one (docs/covariance.md).
 /// Order: rotation about x, y, z [rad], translation along x, y, z [units of the cloud]; the small motion is applied on
 /// the left, in the target's frame, rotations about `centre`.
 struct Precision {

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double min_normal_cosine = 0.7;
 constexpr std::size_t min_pairs = 30;
+constexpr std::size_t block = 512;  // points of the sample that one thread takes at a time
 constexpr double max_growth = 0.1;  // of one step
 constexpr double loss_sigmas = 3.0;
 constexpr double least_loss_scale = 0.15;  // voxels
@@ -115,7 +116,6 @@ void visit_pairs(const Surface& source, const Surface& target, const Transformat
 NormalEquations linearise(const Surface& source, const Surface& target, const Transformation& pose, double scale,
                           double radius, double loss_scale, std::size_t max_points, int threads,
                           Partners* partners = nullptr) {
-  constexpr std::size_t block = 512;
   const Sample sample(source, max_points);
   const NormalEquations none{pose.translation(), loss_scale};
   std::vector<NormalEquations> parts((sample.size + block - 1) / block, none);
@@ -237,16 +237,21 @@ double loss_scale_of(double residual_variance, double radius, double voxel_size)
   return std::clamp(loss_sigmas * std::sqrt(residual_variance), std::min(least_loss_scale * voxel_size, most), most);
 }
 
-std::vector<double> shifts_along_normals(const Surface& source, const Surface& target, const Transformation& pose,
-                                         double radius, std::size_t max_points, const SmallMotion& motion) {
-  std::vector<double> shifts;
+std::vector<PlanePair> plane_pairs_at(const Surface& source, const Surface& target, const Transformation& pose,
+                                      double radius, std::size_t max_points, int threads) {
   const Sample sample(source, max_points);
-  visit_pairs(source, target, pose, 1, radius, sample, 0, sample.size, nullptr,
-              [&](const Eigen::Vector3d& p, const Eigen::Vector3d&, const Eigen::Vector3d& n) {
-                const Eigen::Vector3d moved = motion.rotation_rad.cross(p - motion.centre) + motion.translation;
-                shifts.push_back(std::abs(n.dot(moved)));
-              });
-  return shifts;
+  std::vector<std::vector<PlanePair>> parts((sample.size + block - 1) / block);
+  parallel_blocks(parts.size(), threads, 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      visit_pairs(source, target, pose, 1, radius, sample, k * block, (k + 1) * block, nullptr,
+                  [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& n) {
+                    parts[k].push_back({p, n, n.dot(p - q)});
+                  });
+    }
+  });
+  std::vector<PlanePair> pairs;
+  for (const std::vector<PlanePair>& part : parts) pairs.insert(pairs.end(), part.begin(), part.end());
+  return pairs;
 }
 
 }  // namespace igsp

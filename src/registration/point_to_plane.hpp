@@ -87,13 +87,13 @@ Linearisation linearise_at(const Surface& source, const Surface& target, const T
 /// the other side of a trunk.
 double loss_scale_of(double residual_variance, double radius, double voxel_size);
 
-/// A motion to first order: p moves by rotation x (p - centre) + translation.
-struct SmallMotion {
-  Eigen::Vector3d centre, rotation_rad, translation;
+/// A point of the source that lies beside a place of the target, as linearise_at pairs them; in the target's frame.
+struct PlanePair {
+  Eigen::Vector3d place;   ///< the point, moved
+  Eigen::Vector3d normal;  ///< unit, of both surfaces
+  double residual;         ///< the point's distance from the target along the normal
 };
-
-/// How far the motion shifts the pairs of linearise_at along their normals, either way [units of the cloud].
-std::vector<double> shifts_along_normals(const Surface& source, const Surface& target, const Transformation& pose,
-                                         double radius, std::size_t max_points, const SmallMotion& motion);
+std::vector<PlanePair> plane_pairs_at(const Surface& source, const Surface& target, const Transformation& pose,
+                                      double radius, std::size_t max_points, int threads = 1);
 
 }  // namespace igsp

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "registration/pose_covariance.hpp"
 #include "registration/surface_contact.hpp"
 
 namespace igsp {
@@ -57,19 +58,6 @@ Transformation motion_about(const Eigen::Vector3d& centre, const Vector6& motion
   return result;
 }
 
-// As in the last steps of the refinement, whose loss follows the residuals.
-Linearisation linearise_as_refined(const FineSurfaces& surfaces, const Transformation& target_from_source) {
-  const double radius = fine_search_radius * surfaces.voxel_size;
-  double loss_scale = 0;
-  Linearisation at_pose;
-  for (int k = 0; k < 3; ++k) {
-    at_pose = linearise_at(surfaces.source, surfaces.target, target_from_source, radius, max_fine_points,
-                           surfaces.threads, loss_scale);
-    loss_scale = loss_scale_of(at_pose.residual_variance, radius, surfaces.voxel_size);
-  }
-  return at_pose;
-}
-
 // Of at least one value.
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -111,16 +99,16 @@ FineSurfaces::FineSurfaces(const Features& source_features, const Features& targ
       threads(number_of_threads) {}
 
 Precision precision_at(const FineSurfaces& surfaces, const Transformation& target_from_source, int degrees_of_freedom) {
-  const Linearisation at_pose = linearise_as_refined(surfaces, target_from_source);
+  const double radius = fine_search_radius * surfaces.voxel_size;
+  const PoseCovariance pose = pose_covariance(
+      plane_pairs_at(surfaces.source, surfaces.target, target_from_source, radius, max_fine_points, surfaces.threads),
+      radius, surfaces.voxel_size);
   Precision precision;
-  precision.centre = at_pose.centre;
-  precision.inlier_rmse = std::sqrt(at_pose.residual_variance);
-  if (at_pose.pairs == 0 || !(at_pose.residual_variance > 0)) return precision;
-  precision.information = at_pose.hessian / at_pose.residual_variance;
-  const Eigen::LDLT<Matrix6> solver(precision.information);
-  if (solver.info() == Eigen::Success && solver.isPositive() && solver.rcond() > 1e-15) {
-    precision.covariance = solver.solve(Matrix6::Identity());
-  }
+  precision.centre = pose.centre;
+  precision.inlier_rmse = std::sqrt(pose.residual_variance);
+  precision.information = pose.information;
+  precision.covariance = pose.covariance;
+  if (!(pose.residual_variance > 0)) return precision;
   const ScaleFit scale =
       fit_scale(surfaces.source, surfaces.target, target_from_source,
                 {0, max_scale_points, scale_radii, 0, surfaces.voxel_size, degrees_of_freedom, surfaces.threads});
@@ -162,9 +150,13 @@ std::vector<FreeDirection> free_directions(const PreparedCloud& moved, const Pre
   // Where few voxels lie across a body, a trial motion of several leaves it, whatever its axis.
   const auto is_unevenness = [&](const Vector6& motion, double seen) {
     if (seen * size > unevenness * v) return false;
-    const SmallMotion whole{at_pose.centre, motion.head<3>(), size * motion.tail<3>()};
-    return median_of(shifts_along_normals(moved_surface, fixed_surface, fixed_from_moved, search_radius * v, max_points,
-                                          whole)) > alike * seen * size;
+    const Eigen::Vector3d rotation_rad = motion.head<3>(), translation = size * motion.tail<3>();
+    std::vector<double> shifts;
+    for (const PlanePair& pair :
+         plane_pairs_at(moved_surface, fixed_surface, fixed_from_moved, search_radius * v, max_points)) {
+      shifts.push_back(std::abs(pair.normal.dot(rotation_rad.cross(pair.place - at_pose.centre) + translation)));
+    }
+    return !shifts.empty() && median_of(std::move(shifts)) > alike * seen * size;
   };
   const auto is_free = [&](std::size_t i) {
     const Vector6 motion = solver.eigenvectors().col(i);

@@ -122,7 +122,7 @@ function showPrecision() {
     table.append(make('tr', [make('th', name), ...values.map((value) => make('td', short(value)))]));
   row('rotation about [deg]', deviation.slice(0, 3).map(degrees));
   row('translation along [units]', deviation.slice(3));
-  const note = 'From the residuals of the fine registration, as if they were independent: a lower bound.';
+  const note = 'From the residuals of the fine registration, those of one patch of surface counted as one.';
   place.append(table, make('p', note, 'note'));
   if (free.length === 0) place.append(make('p', 'No direction is free at this pose.'));
 }

@@ -1,0 +1,132 @@
+#include "registration/pose_covariance.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "estimation/robust_fit.hpp"
+
+namespace igsp {
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+// Residuals of a tree, a wall or a piece of furniture are alike: seen from elsewhere all of it lies a little off.
+// Smaller patches than these cover too little (docs/covariance.md).
+constexpr double patch_size = 32;       // voxels, ...
+constexpr double patches_per_size = 1;  // ... but no larger than the root mean square size of what lies on each other
+constexpr double unknowns = 6;
+// What whole scenes share, such as the side from which both scanners see them, no patch tells. Of simulated parks,
+// rooms and objects, each 12 scenes in 10 draws, the ellipsoids of 95 % held 85, 89 and 93 % without this.
+constexpr double beyond_patches = 1.3;
+
+struct Weighted {
+  double loss_scale = 0, sum = 0, squares = 0;
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+  double weight_of(const PlanePair& pair) const {
+    return geman_mcclure_weight(pair.residual * pair.residual, loss_scale * loss_scale);
+  }
+};
+
+// As the last steps of the refinement weigh them: the scale of the loss follows the residuals.
+Weighted weigh(std::span<const PlanePair> pairs, double radius, double voxel_size) {
+  Weighted result;
+  result.loss_scale = 0.5 * radius;
+  for (int k = 0; k < 3; ++k) {
+    Weighted next;
+    next.loss_scale = k == 0 ? result.loss_scale : loss_scale_of(result.squares / result.sum, radius, voxel_size);
+    for (const PlanePair& pair : pairs) {
+      const double weight = next.weight_of(pair);
+      next.sum += weight;
+      next.squares += weight * pair.residual * pair.residual;
+      next.centroid += weight * pair.place;
+    }
+    if (!(next.sum > 0)) return {};
+    next.centroid /= next.sum;
+    result = next;
+  }
+  return result;
+}
+
+double size_of(std::span<const PlanePair> pairs, const Weighted& weighted) {
+  double squares = 0;
+  for (const PlanePair& pair : pairs)
+    squares += weighted.weight_of(pair) * (pair.place - weighted.centroid).squaredNorm();
+  return std::sqrt(squares / weighted.sum);
+}
+
+struct Patch {
+  Vector6 gradient = Vector6::Zero();
+  double weight = 0;
+};
+
+// Sums over all pairs, and the gradients of patches in the order of their places.
+struct Sums {
+  Matrix6 hessian = Matrix6::Zero();
+  std::map<std::array<std::int64_t, 3>, Patch> patches;
+};
+
+Sums sum_up(std::span<const PlanePair> pairs, const Weighted& weighted, double patch) {
+  Sums sums;
+  for (const PlanePair& pair : pairs) {
+    const Eigen::Vector3d place = pair.place - weighted.centroid;
+    const double weight = weighted.weight_of(pair);
+    Vector6 jacobian;
+    jacobian << place.cross(pair.normal), pair.normal;
+    sums.hessian += weight * jacobian * jacobian.transpose();
+    const Eigen::Vector3d cell = (place / patch).array().floor();
+    Patch& at = sums.patches[{static_cast<std::int64_t>(cell.x()), static_cast<std::int64_t>(cell.y()),
+                              static_cast<std::int64_t>(cell.z())}];
+    at.gradient += weight * pair.residual * jacobian;
+    at.weight += weight;
+  }
+  return sums;
+}
+
+// Whether every motion changes some distance; in no unit of its own.
+bool is_determined(const Matrix6& hessian) {
+  if (!(hessian.diagonal().minCoeff() > 0)) return false;
+  const Vector6 scale = hessian.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LDLT<Matrix6> solver(scale.asDiagonal() * hessian * scale.asDiagonal());
+  return solver.info() == Eigen::Success && solver.vectorD().minCoeff() > 1e-12;
+}
+
+// Covariance of the gradient.
+Matrix6 scatter_of(const Sums& sums, double weight_sum, double residual_variance) {
+  Matrix6 scatter = Matrix6::Zero();
+  double squares = 0;
+  for (const auto& [cell, patch] : sums.patches) {
+    scatter += patch.gradient * patch.gradient.transpose();
+    squares += patch.weight * patch.weight;
+  }
+  // As many patches of one weight would scatter alike. The estimate follows six of their directions.
+  const double patches = weight_sum * weight_sum / squares;
+  scatter *= patches / std::max(1.0, patches - unknowns);
+  return scatter + std::min(1.0, unknowns / patches) * residual_variance * sums.hessian;
+}
+
+}  // namespace
+
+PoseCovariance pose_covariance(std::span<const PlanePair> pairs, double radius, double voxel_size) {
+  PoseCovariance result;
+  const Weighted weighted = weigh(pairs, radius, voxel_size);
+  if (!(weighted.sum > 0)) return result;
+  result.centre = weighted.centroid;
+  result.residual_variance = weighted.squares / weighted.sum;
+  if (!(result.residual_variance > 0)) return result;
+  const double patch = std::min(patch_size * voxel_size, size_of(pairs, weighted) / patches_per_size);
+  const Sums sums = sum_up(pairs, weighted, patch);
+  result.information = sums.hessian / result.residual_variance;
+  if (!is_determined(sums.hessian)) return result;
+  const Eigen::LDLT<Matrix6> solver(sums.hessian);
+  const Matrix6 half = solver.solve(scatter_of(sums, weighted.sum, result.residual_variance));
+  const Matrix6 covariance = solver.solve(half.transpose());
+  result.covariance = 0.5 * beyond_patches * (covariance + covariance.transpose());
+  result.information = result.covariance.ldlt().solve(Matrix6::Identity());
+  return result;
+}
+
+}  // namespace igsp

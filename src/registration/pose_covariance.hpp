@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+
+#include "registration/point_to_plane.hpp"
+
+namespace igsp {
+
+/// What the pairs of a refined pose say of it. Order and frame as in Precision.
+struct PoseCovariance {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();                              ///< of the pairs
+  double residual_variance = 0;                                                  ///< [units of the cloud ^ 2]
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  ///< 0 where not determined
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
+/// The covariance of the robust least squares estimate, with residuals that are alike where they lie near each other:
+/// H^-1 B H^-1 with H = sum of w J J^T and B = sum over patches of g g^T, g = sum of w r J over the pairs of a patch
+/// (the cluster-robust covariance of Liang and Zeger 1986). Few patches say little of B, so it is drawn towards what
+/// independent residuals would give. `radius`: at which the pairs were found.
+PoseCovariance pose_covariance(std::span<const PlanePair> pairs, double radius, double voxel_size);
+
+}  // namespace igsp
