@@ -34,10 +34,6 @@ constexpr double search_radius = 1.5;        // voxels
 // a field, a median below 0.06.
 constexpr double unevenness = 1.3;  // voxels
 constexpr double alike = 0.15;
-// Unevenness does not add up over a short motion, a shape does: 0.984 and more of the contact is left of cylinders and
-// corridors, 0.974 and less of what is fixed.
-constexpr double short_motion = 2.0;  // voxels
-constexpr double contact_after_short_motion = 0.98;
 constexpr std::size_t max_points = 1500;
 
 constexpr double fine_normal_radius = 1.5;  // voxels
@@ -146,13 +142,10 @@ std::vector<FreeDirection> free_directions(const PreparedCloud& moved, const Pre
   if (solver.eigenvalues()[0] > loosest * loosest) return {};
 
   const double contact = surface_contact(moved, fixed, fixed_from_moved).share;
-  const auto touches_after = [&](const Vector6& motion, double share) {
+  const auto still_touches = [&](const Vector6& motion, double share) {
     const Transformation tried = motion_about(at_pose.centre, motion, size) * fixed_from_moved;
     return surface_contact(moved, fixed, tried).share > share * contact &&
            surface_contact(fixed, moved, tried.inverse()).share > share * contact;
-  };
-  const auto still_touches = [&](const Vector6& motion, double share) {
-    return touches_after(motion, share) && touches_after(-motion, share);
   };
   // Where few voxels lie across a body, a trial motion of several leaves it, whatever its axis.
   const auto is_unevenness = [&](const Vector6& motion, double seen) {
@@ -170,8 +163,8 @@ std::vector<FreeDirection> free_directions(const PreparedCloud& moved, const Pre
     const double seen = std::sqrt(std::max(0.0, solver.eigenvalues()[i]));
     if (seen >= well_fixed) return false;
     const double share = seen < hardly_seen ? similar_contact : unchanged_contact;
-    return (is_unevenness(motion, seen) && still_touches(short_motion * v * motion, contact_after_short_motion)) ||
-           still_touches(trial_motion * v * motion, share);
+    return is_unevenness(motion, seen) ||
+           (still_touches(trial_motion * v * motion, share) && still_touches(-trial_motion * v * motion, share));
   };
   std::array<bool, 6> free{};
   parallel_blocks(free.size(), threads, 1, [&](std::size_t begin, std::size_t end) {
