@@ -125,7 +125,6 @@ MUTANTS = [
     ("registration/pose_covariance.cpp", "residual_variance * sums.hessian;", "sums.hessian;", "covariance: independent residuals"),
     ("registration/precision.cpp", "std::sqrt(pose.residual_variance)", "pose.residual_variance", "root of the mean square"),
     ("registration/verdict.cpp", "at_v.lying() < lying_on_it &&", "", "lines that lie beside each other are not coarse"),
-    ("registration/hypotheses_search.cpp", "k >= finest_settled; --k", "k > 3; --k", "a coarse answer settles first"),
     ("estimation/robust_fit.cpp", "squaredNorm(), scale * scale)", "squaredNorm(), scale)", "scale of the robust weight"),
     ("registration/common_frame.cpp", "describe_in_frame(*source_supports_, target_from_source.transpose(),", "describe_in_frame(*source_supports_, target_from_source,", "the common frame, seen in the source"),
     # Many scans
