@@ -33,8 +33,9 @@ struct NormalEquations {
   Vector7 gradient = Vector7::Zero();
   std::size_t pairs = 0;
   double weight_sum = 0, weighted_squares = 0;
-  double residual_variance() const { return weight_sum > 0 ? weighted_squares / weight_sum : 0.0; }
   Eigen::Vector3d weighted_places = Eigen::Vector3d::Zero();
+
+  double residual_variance() const { return weight_sum > 0 ? weighted_squares / weight_sum : 0.0; }
 
   // p as moved by the current pose, q of the target, n the normal of both.
   void add(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& n) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 
 #include "estimation/robust_fit.hpp"
@@ -16,8 +17,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 // Residuals of a tree, a wall or a piece of furniture are alike: seen from elsewhere all of it lies a little off.
 // Smaller patches than these cover too little (docs/covariance.md).
-constexpr double patch_size = 32;       // voxels, ...
-constexpr double patches_per_size = 1;  // ... but no larger than the root mean square size of what lies on each other
+constexpr double patch_size = 32;  // voxels, but no larger than the root mean square size of what lies on each other
 constexpr double unknowns = 6;
 // What whole scenes share, such as the side from which both scanners see them, no patch tells. Of simulated parks,
 // rooms and objects, each 12 scenes in 10 draws, the ellipsoids of 95 % held 85, 89 and 93 % without this.
@@ -117,7 +117,7 @@ PoseCovariance pose_covariance(std::span<const PlanePair> pairs, double radius, 
   result.centre = weighted.centroid;
   result.residual_variance = weighted.squares / weighted.sum;
   if (!(result.residual_variance > 0)) return result;
-  const double patch = std::min(patch_size * voxel_size, size_of(pairs, weighted) / patches_per_size);
+  const double patch = std::min(patch_size * voxel_size, size_of(pairs, weighted));
   const Sums sums = sum_up(pairs, weighted, patch);
   result.information = sums.hessian / result.residual_variance;
   if (!is_determined(sums.hessian)) return result;
