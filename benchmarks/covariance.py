@@ -59,8 +59,8 @@ def whitened_error(run, truth, dof):
 
 
 def errors_of(igsp, scene, seed, arguments, folder):
-    subprocess.run([igsp, "simulate", scene, "--seed", str(seed), "--points", str(DENSE * arguments.points), "--noise", "0", "--out", folder],
-                   check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([igsp, "simulate", scene, "--seed", str(seed), "--points", str(DENSE * arguments.points), "--noise", "0",
+                    "--out", folder], check=True, stdout=subprocess.DEVNULL)
     dense = [read_ply(folder / f"station_{i}.ply") for i in (1, 0)]
     truth = np.loadtxt(folder / "station_1_to_0.txt")
     random = np.random.default_rng(1)

@@ -5,8 +5,8 @@
     python3 scripts/same_bits.py --plain-libm build/release/bin/igsp -- qemu-x86_64 -cpu Nehalem build/release/bin/igsp
 
 Simulates scans with both; registers what the first one simulated with both; compares scans, transformations and reports,
-all but what tells of time, and says how far motion and confidence differ at most. With a list of cases, as `igsp benchmark` reads it, both run the first of each group, and their
-rows are compared, too. --plain-libm has the first one use the sine, cosine, ... that glibc has for processors without fused
+all but what tells of time, and says how far motion and confidence differ at most. With a list of cases, as `igsp benchmark`
+reads it, both run the first of each group, and their rows are compared, too. --plain-libm has the first one use the sine, cosine, ... that glibc has for processors without fused
 multiply-add, which round otherwise: what differs then is of igsp.
 """
 

@@ -74,7 +74,7 @@ Draws draw(std::string_view scene, int points, double noise) {
 }
 
 // Noise is a part of what a pose errs by: the covariance counts what whole patches share as well, so that it says more
-// than noise alone does. Seen: 0.4 and 0.5 about the mean.
+// than noise alone does.
 TEST(Covariance, HoldsTheSpreadOverHundredNoiseDrawsOfAnObject) {
   const Draws draws = draw("object", 20000, 1e-4);
   EXPECT_GT(draws.mahalanobis(draws.mean()), 0.1);

@@ -52,8 +52,7 @@ constexpr const char* header =
     "pair,answer,kind,source_scene,target_scene,source_seed,target_seed,source_points,target_points,noise,"
     "station_distance,field_of_view_deg,overlap,rotation_error_deg,displacement_voxels,right,has_estimate,registered,"
     "confidence,quality,contact_share,mutual_matches,agreeing_matches,rival_odds,runner_up_share,free_directions,"
-    "estimated_overlap,source_keypoints,target_keypoints,evidence_voxels,"
-    "violation\n";
+    "estimated_overlap,source_keypoints,target_keypoints,evidence_voxels,violation\n";
 
 std::string row(std::uint64_t number, std::string_view answer, const Pair& pair, double overlap, const Result& result) {
   const Recipe& recipe = pair.recipe;
@@ -65,8 +64,8 @@ std::string row(std::uint64_t number, std::string_view answer, const Pair& pair,
                      recipe.station_distance, recipe.field_of_view_deg, overlap,
                      error.rotation_rad * 180.0 / std::numbers::pi, error.displacement, is_right(pair, result),
                      result.has_estimate, result.registered) +
-         fmt::format("{:.6g},{:.4f},{:.4f},{},{},{:.4g},{:.3f},{},{:.3f},{},{},{:g},{:.4f}\n", result.confidence, e.quality,
-                     e.contact_share, e.mutual_matches, e.agreeing_matches, e.rival_odds,
+         fmt::format("{:.6g},{:.4f},{:.4f},{},{},{:.4g},{:.3f},{},{:.3f},{},{},{:g},{:.4f}\n", result.confidence,
+                     e.quality, e.contact_share, e.mutual_matches, e.agreeing_matches, e.rival_odds,
                      result.runner_up ? result.runner_up->share : 0.0, result.precision.free_directions.size(),
                      result.overlap(), result.source.keypoints, result.target.keypoints,
                      e.voxel_size / result.voxel_size, e.free_space.violation());

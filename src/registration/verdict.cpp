@@ -18,7 +18,7 @@ constexpr double near_quality = 1.5;  // decades below the answer's
 
 // Of the overlap that a coarser rung sees, the finest one sees little where a pose is only nearly right or coordinates
 // come in steps of several voxels, and at right poses of scan lines that lie beside each other. These lie on the
-// surface wherever they are beside it (0.82 and more of 18 simulated pairs), those do not (0.55 and less).
+// surface wherever they are beside it (0.82 and more of 17 simulated pairs), those mostly do not (0.55 and less).
 constexpr double overlap_that_is_left = 0.25;
 constexpr double lying_on_it = 0.7;
 constexpr double places_of_no_weight = 10;  // that many beside a surface prove nothing
