@@ -59,7 +59,7 @@ Boxes two_rooms() {
 const Vector3d left_eye(-2, 3.8, 1.5), right_eye(2.2, 3.6, 1.5);
 
 struct Cloud {
-  Cloud(const Scan& scan) : features(extract_features(scan, options())), prepared(features) {}
+  Cloud(const Scan& scan) : features(extract_features(scan, options())), space(features) {}
   static Options options() {
     Options options;
     options.threads = 1;
@@ -67,7 +67,7 @@ struct Cloud {
     return options;
   }
   Features features;
-  PreparedCloud prepared;
+  ScannedSpace space;
 };
 
 /// Of two scans given in one frame, when the first is moved by `motion`.
@@ -76,7 +76,7 @@ FreeSpace violations(const Scan& source, const Scan& target,
   const Cloud a(source), b(target);
   Transformation local = motion;  // between the centred clouds
   local.translation() = motion * a.features.origin - b.features.origin;
-  return free_space(a.prepared, b.prepared, local);
+  return free_space(a.space, b.space, local);
 }
 
 Transformation shift(double x, double y, double z) {
@@ -151,10 +151,12 @@ TEST(FreeSpace, FewInViewSayLittle) {
 TEST(FreeSpace, EvidenceIsForWhatIsEmptyAndAgainstWhatIsNot) {
   const Points scan = two_rooms().seen_from(left_eye, Random(1));
   const Cloud room({scan, left_eye});
-  const PreparedCloud& cloud = room.prepared;
-  EXPECT_EQ(free_space_evidence({}, cloud, cloud), 0);  // to the bit: without viewpoints two questions decide
+  EXPECT_EQ(free_space_evidence({}, room.features, room.features),
+            0);  // to the bit: without viewpoints two questions decide
   const FreeSpaceViolation none{1000, 0}, some{1000, 20}, people{1000, 36}, wall{1000, 300};
-  const auto evidence = [&](auto... directions) { return free_space_evidence(FreeSpace{directions...}, cloud, cloud); };
+  const auto evidence = [&](auto... directions) {
+    return free_space_evidence(FreeSpace{directions...}, room.features, room.features);
+  };
   EXPECT_GT(evidence(none, none), evidence(none, std::nullopt));
   EXPECT_GT(evidence(none, std::nullopt), evidence(some, std::nullopt));
   EXPECT_NEAR(evidence(people, people), 0, 0.03);

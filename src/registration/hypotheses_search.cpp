@@ -130,7 +130,9 @@ void finish(ScaleLadder& scales, const Options& options, StageClock& clock, Sear
 
 // A few iterations of the loop and a short refinement for each, then the question that the verdict asks as well: how
 // well do the clouds agree at this pose? Best first.
-std::vector<Rival> rank(CommonFrame& frame, std::span<const Transformation> candidates, const Options& options) {
+std::vector<Rival> rank(ScaleLadder& scales, std::size_t rung, std::span<const Transformation> candidates,
+                        const Options& options) {
+  CommonFrame& frame = scales.frame(rung);
   const Surface source = surface_of(frame.source()), target = surface_of(frame.target());
   const double v = frame.target().features.voxel_size;
   const Options alone = in_one_thread(options);
@@ -140,7 +142,7 @@ std::vector<Rival> rank(CommonFrame& frame, std::span<const Transformation> cand
         return settle(source, target, loop.target_from_source, v, alone);
       });
   std::vector<Rival> ranked = look_into_each<Rival>(frame, poses, [&](const Transformation& pose) {
-    return Rival{pose, assess_pose(frame, pose, 1)};
+    return Rival{pose, assess_pose(scales, rung, pose, 1)};
   });
   sort_by_quality(ranked);
   return ranked;
@@ -158,20 +160,21 @@ bool is_settled(std::span<const Rival> ranked, double voxel_size) {
 }
 
 // Proposes, screens and ranks; together with the best that another scale found.
-std::vector<Rival> search_at(CommonFrame& scale, std::span<const Rival> found, const Options& options,
-                             StageClock& clock) {
+std::vector<Rival> search_at(ScaleLadder& scales, std::size_t rung, std::span<const Rival> found,
+                             const Options& options, StageClock& clock) {
+  CommonFrame& frame = scales.frame(rung);
   found = found.first(std::min(found.size(), carried));
   clock.start("hypotheses");
-  const std::vector<Hypothesis> hypotheses = propose(scale, options);
+  const std::vector<Hypothesis> hypotheses = propose(frame, options);
   clock.start("screening");
   const std::vector<Rematch> screened =
-      distinct(screen(scale, hypotheses, options, [&](double share) { clock.report(share); }), found,
-               scale.target().features.voxel_size, options.hypotheses.max_refined);
+      distinct(screen(frame, hypotheses, options, [&](double share) { clock.report(share); }), found,
+               scales.voxel_size(rung), options.hypotheses.max_refined);
   clock.start("ranking");
   std::vector<Transformation> candidates;
   for (const Rival& pose : found) candidates.push_back(pose.target_from_source);
   for (const Rematch& pose : screened) candidates.push_back(pose.target_from_source);
-  return rank(scale, candidates, options);
+  return rank(scales, rung, candidates, options);
 }
 
 // What the finer rungs say against the best pose of this one: they see what it cannot, not the other way round.
@@ -234,7 +237,7 @@ SearchOutcome hypotheses_search(ScaleLadder& scales, const Options& options, Sta
   double quality = std::numeric_limits<double>::lowest();
   for (std::size_t rung = scales.rungs(); rung-- > 0;) {
     CommonFrame& frame = scales.frame(rung);
-    outcome.ranked[rung] = search_at(frame, found, options, clock);
+    outcome.ranked[rung] = search_at(scales, rung, found, options, clock);
     found = outcome.ranked[rung];
     if (!found.empty()) quality = std::max(quality, found.front().assessment.quality);
     outcome.finest_rung = rung;

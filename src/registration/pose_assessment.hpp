@@ -1,7 +1,7 @@
 #pragma once
 
 #include "igsp/result.hpp"
-#include "registration/common_frame.hpp"
+#include "registration/scale_ladder.hpp"
 #include "registration/surface_contact.hpp"
 
 namespace igsp {
@@ -20,6 +20,8 @@ struct PoseAssessment {
   /// Odds that the pose is chance, against that it is right.
   double chance_odds() const;
 };
-PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from_source, int threads);
+/// On a rung of the ladder that is ready.
+PoseAssessment assess_pose(ScaleLadder& scales, std::size_t rung, const Transformation& target_from_source,
+                           int threads);
 
 }  // namespace igsp
