@@ -57,16 +57,16 @@ std::optional<FreeSpaceViolation> ScannedSpace::violation_by(const ScannedSpace&
                                                              const Transformation& this_from_moved) const {
   if (!seen_) return {};
   FreeSpaceViolation violation;
-  const float reach = static_cast<float>(on_surface * features_.voxel_size);
   const Points& points = moved.features_.points;
   const std::size_t stride = std::max<std::size_t>(1, points.size() / max_looks);
   for (std::size_t i = 0; i < points.size(); i += stride) {
     const Eigen::Vector3d point = this_from_moved * points[i];
-    const RangeImage::Sight sight = seen_->image.look_at(point);
+    const auto [sight, growth] = seen_->image.look_at(point);
     if (sight == RangeImage::Sight::out_of_view) continue;
     ++violation.in_view;
     if (sight == RangeImage::Sight::possible) continue;
-    if (seen_->surface.nearest(point.cast<float>(), reach) < 0) ++violation.contradicting;
+    const double reach = on_surface * growth * features_.voxel_size;
+    if (seen_->surface.nearest(point.cast<float>(), static_cast<float>(reach)) < 0) ++violation.contradicting;
   }
   return violation;
 }

@@ -167,13 +167,13 @@ TEST(FreeSpace, EvidenceIsForWhatIsEmptyAndAgainstWhatIsNot) {
 TEST(FreeSpace, BeyondTheRimOfWhatWasSeenNothingIsKnown) {
   const Points wall = Boxes{{box(2, -1, -1, 2.1, 1, 1)}}.seen_from(Vector3d::Zero(), Random(1));
   const RangeImage image(wall, Vector3d::Zero(), voxel_size);
-  EXPECT_EQ(image.look_at({1, 0, 0}), RangeImage::Sight::empty);
-  EXPECT_EQ(image.look_at({1, 0.3, -0.3}), RangeImage::Sight::empty);
-  EXPECT_EQ(image.look_at({1.9, 0, 0}), RangeImage::Sight::possible);  // thinner than the tolerance
-  EXPECT_EQ(image.look_at({3, 0, 0}), RangeImage::Sight::possible);    // hidden
-  EXPECT_EQ(image.look_at({1, 0.53, 0}), RangeImage::Sight::out_of_view);
-  EXPECT_EQ(image.look_at({-1, 0, 0}), RangeImage::Sight::out_of_view);
-  EXPECT_EQ(image.look_at({0, 0, 0}), RangeImage::Sight::out_of_view);
+  EXPECT_EQ(image.look_at({1, 0, 0}).sight, RangeImage::Sight::empty);
+  EXPECT_EQ(image.look_at({1, 0.3, -0.3}).sight, RangeImage::Sight::empty);
+  EXPECT_EQ(image.look_at({1.9, 0, 0}).sight, RangeImage::Sight::possible);  // thinner than the tolerance
+  EXPECT_EQ(image.look_at({3, 0, 0}).sight, RangeImage::Sight::possible);    // hidden
+  EXPECT_EQ(image.look_at({1, 0.53, 0}).sight, RangeImage::Sight::out_of_view);
+  EXPECT_EQ(image.look_at({-1, 0, 0}).sight, RangeImage::Sight::out_of_view);
+  EXPECT_EQ(image.look_at({0, 0, 0}).sight, RangeImage::Sight::out_of_view);
 }
 
 TEST(RangeImage, IsTheSameWhereverItIsTurned) {
@@ -185,8 +185,8 @@ TEST(RangeImage, IsTheSameWhereverItIsTurned) {
   int different = 0, empty = 0;
   for (int i = 0; i < 20000; ++i) {
     const Vector3d point = random.in_cube(6);
-    different += image.look_at(point) != turned.look_at(g * point);
-    empty += image.look_at(point) == RangeImage::Sight::empty;
+    different += image.look_at(point).sight != turned.look_at(g * point).sight;
+    empty += image.look_at(point).sight == RangeImage::Sight::empty;
   }
   EXPECT_LE(different, 4);  // rounding
   EXPECT_GT(empty, 500);
@@ -202,20 +202,20 @@ TEST(RangeImage, AFarViewpointMeansParallelLinesOfSight) {
   for (int i = 0; i < 5000; ++i) {
     const double x = random.uniform(-2.8, 2.8), y = random.uniform(-2.8, 2.8);
     const Vector3d above(x, y, surface.height_at(x, y) + 1.5), below(x, y, surface.height_at(x, y) - 1.5);
-    different += far.look_at(above) != RangeImage::Sight::empty;
-    EXPECT_EQ(far.look_at(below), RangeImage::Sight::possible);
-    different += far.look_at(above) != farther.look_at(above);
-    different += farther.look_at(above) != farthest.look_at(above);
+    different += far.look_at(above).sight != RangeImage::Sight::empty;
+    EXPECT_EQ(far.look_at(below).sight, RangeImage::Sight::possible);
+    different += far.look_at(above).sight != farther.look_at(above).sight;
+    different += farther.look_at(above).sight != farthest.look_at(above).sight;
   }
   EXPECT_LT(different, 100);  // steep slopes within the aperture
 }
 
 TEST(RangeImage, DegenerateCloudsSeeNothing) {
   const Points none, one{Vector3d(1, 0, 0)}, line{Vector3d(1, 0, 0), Vector3d(2, 0, 0), Vector3d(3, 0, 0)};
-  EXPECT_EQ(RangeImage(none, Vector3d::Zero(), 1).look_at({0.5, 0, 0}), RangeImage::Sight::out_of_view);
-  EXPECT_EQ(RangeImage(one, Vector3d::Zero(), 1).look_at({0.5, 0, 0}), RangeImage::Sight::out_of_view);
-  EXPECT_EQ(RangeImage(one, one[0], 1).look_at({0.5, 0, 0}), RangeImage::Sight::out_of_view);
-  EXPECT_EQ(RangeImage(line, Vector3d::Zero(), 0.1).look_at({0.1, 0, 0}), RangeImage::Sight::empty);
+  EXPECT_EQ(RangeImage(none, Vector3d::Zero(), 1).look_at({0.5, 0, 0}).sight, RangeImage::Sight::out_of_view);
+  EXPECT_EQ(RangeImage(one, Vector3d::Zero(), 1).look_at({0.5, 0, 0}).sight, RangeImage::Sight::out_of_view);
+  EXPECT_EQ(RangeImage(one, one[0], 1).look_at({0.5, 0, 0}).sight, RangeImage::Sight::out_of_view);
+  EXPECT_EQ(RangeImage(line, Vector3d::Zero(), 0.1).look_at({0.1, 0, 0}).sight, RangeImage::Sight::empty);
 }
 
 }  // namespace

@@ -239,7 +239,9 @@ SearchOutcome hypotheses_search(ScaleLadder& scales, const Options& options, Sta
     CommonFrame& frame = scales.frame(rung);
     outcome.ranked[rung] = search_at(scales, rung, found, options, clock);
     found = outcome.ranked[rung];
-    if (!found.empty()) quality = std::max(quality, found.front().assessment.quality);
+    // What contradicts the poses that were found says nothing of those that were not.
+    for (const Rival& pose : found)
+      quality = std::max(quality, pose.assessment.quality - pose.assessment.free_space_evidence);
     outcome.finest_rung = rung;
     const bool is_hopeless = can_tell(rung, frame) && quality < hopeless_quality;
     if (is_hopeless || (options.refinement.enabled && is_settled(found, scales.voxel_size(rung)))) break;

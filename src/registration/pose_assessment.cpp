@@ -62,8 +62,9 @@ PoseAssessment assess_pose(ScaleLadder& scales, std::size_t rung, const Transfor
   assessment.agreeing_matches =
       count_inliers(matches, target_from_source, agreeing_distance * frame.target().features.voxel_size);
   assessment.free_space = scales.free_space_at(target_from_source);
-  assessment.quality = quality_of(assessment) +
-                       free_space_evidence(assessment.free_space, frame.source().features, frame.target().features);
+  assessment.free_space_evidence =
+      free_space_evidence(assessment.free_space, frame.source().features, frame.target().features);
+  assessment.quality = quality_of(assessment) + assessment.free_space_evidence;
   return assessment;
 }
 
