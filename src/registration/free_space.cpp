@@ -6,8 +6,6 @@
 namespace igsp {
 namespace {
 
-constexpr std::size_t max_looks = 1000;
-
 // Surfaces end somewhere between two points and may be met at a grazing angle: what lies on one that was seen, or just
 // beyond its rim, does not contradict, however it is seen.
 constexpr double on_surface = 3.0;  // voxels
@@ -54,11 +52,12 @@ ScannedSpace::ScannedSpace(const Features& features) : features_(features) {
 }
 
 std::optional<FreeSpaceViolation> ScannedSpace::violation_by(const ScannedSpace& moved,
-                                                             const Transformation& this_from_moved) const {
+                                                             const Transformation& this_from_moved,
+                                                             std::size_t most_looks) const {
   if (!seen_) return {};
   FreeSpaceViolation violation;
   const Points& points = moved.features_.points;
-  const std::size_t stride = std::max<std::size_t>(1, points.size() / max_looks);
+  const std::size_t stride = std::max<std::size_t>(1, points.size() / most_looks);
   for (std::size_t i = 0; i < points.size(); i += stride) {
     const Eigen::Vector3d point = this_from_moved * points[i];
     const auto [sight, growth] = seen_->image.look_at(point);
@@ -71,8 +70,10 @@ std::optional<FreeSpaceViolation> ScannedSpace::violation_by(const ScannedSpace&
   return violation;
 }
 
-FreeSpace free_space(const ScannedSpace& source, const ScannedSpace& target, const Transformation& target_from_source) {
-  return {target.violation_by(source, target_from_source), source.violation_by(target, target_from_source.inverse())};
+FreeSpace free_space(const ScannedSpace& source, const ScannedSpace& target, const Transformation& target_from_source,
+                     std::size_t most_looks) {
+  return {target.violation_by(source, target_from_source, most_looks),
+          source.violation_by(target, target_from_source.inverse(), most_looks)};
 }
 
 double free_space_evidence(const FreeSpace& free_space, const Features& source, const Features& target) {

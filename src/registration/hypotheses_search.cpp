@@ -30,6 +30,7 @@ constexpr std::array<std::size_t, 4> first_fine_radius{4, 4, 2, 0};  // by rung
 // Found at 8 v or 4 v, a pose is refined there first: from further off than a voxel of 4 v the fine surfaces of scan
 // lines do not find each other.
 constexpr std::size_t finest_settled = 2;  // rung
+constexpr std::size_t screening_looks = 300;
 constexpr std::size_t coarse_points = 1500;
 constexpr std::size_t early_fine_points = 2000;
 constexpr std::size_t fine_points = 8000;
@@ -75,7 +76,7 @@ std::vector<Rematch> distinct(std::vector<Rematch> sorted, std::span<const Rival
                               int limit) {
   std::vector<Rematch> kept;
   for (Rematch& match : sorted) {
-    if (match.agreeing < fewest_agreeing && !(ranked.empty() && kept.empty())) break;
+    if (match.agreeing < fewest_agreeing && !(ranked.empty() && kept.empty())) continue;
     if (!repeats_one_of(ranked, match.target_from_source, voxel_size) &&
         !repeats_one_of(std::span<const Rematch>(kept), match.target_from_source, voxel_size)) {
       kept.push_back(std::move(match));
@@ -159,6 +160,13 @@ bool is_settled(std::span<const Rival> ranked, double voxel_size) {
   });
 }
 
+FreeSpaceQuestion question_of_free_space(const ScaleLadder& scales) {
+  if (!scales.knows_a_viewpoint()) return {};
+  return [&](const Transformation& pose) {
+    return free_space_evidence(scales.free_space_at(pose, screening_looks), scales.source(), scales.target());
+  };
+}
+
 // Proposes, screens and ranks; together with the best that another scale found.
 std::vector<Rival> search_at(ScaleLadder& scales, std::size_t rung, std::span<const Rival> found,
                              const Options& options, StageClock& clock) {
@@ -167,9 +175,9 @@ std::vector<Rival> search_at(ScaleLadder& scales, std::size_t rung, std::span<co
   clock.start("hypotheses");
   const std::vector<Hypothesis> hypotheses = propose(frame, options);
   clock.start("screening");
-  const std::vector<Rematch> screened =
-      distinct(screen(frame, hypotheses, options, [&](double share) { clock.report(share); }), found,
-               scales.voxel_size(rung), options.hypotheses.max_refined);
+  const std::vector<Rematch> screened = distinct(
+      screen(frame, hypotheses, options, question_of_free_space(scales), [&](double share) { clock.report(share); }),
+      found, scales.voxel_size(rung), options.hypotheses.max_refined);
   clock.start("ranking");
   std::vector<Transformation> candidates;
   for (const Rival& pose : found) candidates.push_back(pose.target_from_source);
