@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "igsp/progress.hpp"
 #include "io/atomic_file.hpp"
 #include "io/input_file.hpp"
+#include "io/moved_copy.hpp"
 
 namespace igsp::io {
 
@@ -16,11 +18,16 @@ namespace igsp::io {
 class MoveJob {
  public:
   MoveJob(InputFile& source, AtomicFile& destination, const Transformation& destination_from_source,
-          const ProgressCallback& progress)
-      : file(source), transformation(destination_from_source), destination_(destination), progress_(progress) {}
+          const MoveOptions& options)
+      : file(source),
+        transformation(destination_from_source),
+        viewpoint(options.viewpoint),
+        destination_(destination),
+        progress_(options.progress) {}
 
   InputFile& file;
   const Transformation& transformation;
+  const std::optional<Eigen::Vector3d>& viewpoint;  ///< see MoveOptions
   std::string bytes;  ///< to be written; append here, then call flush_if_full or flush
 
   void flush_if_full();

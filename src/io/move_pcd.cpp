@@ -22,14 +22,16 @@ std::vector<RecordField> fields_of(const InputFile& file, const PcdHeader& heade
 }
 
 /// VIEWPOINT, the pose of the sensor, moved; the line itself where it says nothing else then.
-std::string moved_viewpoint(std::string_view line, const Transformation& transformation) {
+std::string moved_viewpoint(std::string_view line, const MoveJob& job) {
   const auto words = split_words(line);
   const auto read = parse_pcd_pose(std::span<const std::string_view>(words).subspan(1));
   if (!read) return std::string(line);
   const PcdPose& pose = *read;
-  const Eigen::Vector3d position = moved({pose[0], pose[1], pose[2]}, false, transformation);
-  const Eigen::Quaterniond turned =
-      Eigen::Quaterniond(transformation.linear()).normalized() * Eigen::Quaterniond(pose[3], pose[4], pose[5], pose[6]);
+  if (!job.viewpoint && pose == default_pcd_pose) return std::string(line);
+  const Eigen::Vector3d stated(pose[0], pose[1], pose[2]);
+  const Eigen::Vector3d position = moved(job.viewpoint.value_or(stated), false, job.transformation);
+  const Eigen::Quaterniond turned = Eigen::Quaterniond(job.transformation.linear()).normalized() *
+                                    Eigen::Quaterniond(pose[3], pose[4], pose[5], pose[6]);
   const PcdPose after{position.x(), position.y(), position.z(), turned.w(), turned.x(), turned.y(), turned.z()};
   return after == pose ? std::string(line) : fmt::format("VIEWPOINT {}", fmt::join(after, " "));
 }
@@ -46,7 +48,7 @@ void write_header(MoveJob& job, const std::vector<RecordField>& fields, const Re
   job.copy_lines_read([&](std::string_view line) {
     const auto words = split_words(line);
     const std::string_view key = words.empty() ? std::string_view() : words[0];
-    if (key == "VIEWPOINT") return moved_viewpoint(line, job.transformation);
+    if (key == "VIEWPOINT") return moved_viewpoint(line, job);
     if (motion.changes_types && key == "SIZE") return with_doubles(line, "8");
     if (motion.changes_types && key == "TYPE") return with_doubles(line, "F");
     return std::string(line);

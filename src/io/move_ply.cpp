@@ -28,7 +28,7 @@ void write_header(MoveJob& job, const PlyHeader& header, const std::vector<Recor
   job.copy_lines_read([&](std::string_view line) {
     const auto words = split_words(line);
     if (const auto viewpoint = ply_viewpoint(words)) {
-      const Eigen::Vector3d after = moved(*viewpoint, false, job.transformation);
+      const Eigen::Vector3d after = moved(job.viewpoint.value_or(*viewpoint), false, job.transformation);
       return after == *viewpoint ? std::string(line) : ply_viewpoint_comment(after);
     }
     if (!words.empty() && words[0] == "element") {

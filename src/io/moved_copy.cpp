@@ -95,7 +95,7 @@ bool write_moved(const fs::path& source, const fs::path& destination, const Tran
   InputFile file(source);
   const FormatFamily family = find_family(file);
   AtomicFile output(destination);
-  MoveJob job(file, output, destination_from_source, options.progress);
+  MoveJob job(file, output, destination_from_source, options);
   bool other_type = false;
   switch (family) {
     case FormatFamily::ply:

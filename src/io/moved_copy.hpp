@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,9 @@ struct MoveOptions {
   ReadOptions read;
   bool doubles = false;       ///< float coordinates are written as doubles; integer ones always are
   ProgressCallback progress;  ///< stage "write"
+  /// Where the scanner of `source` is known to have stood, in its frame: takes the place of what the file says. Without
+  /// it the default VIEWPOINT of a PCD, which everyone writes who does not know, stays: moved it would claim something.
+  std::optional<Eigen::Vector3d> viewpoint = {};
 };
 
 /// Whether `destination` can hold all that `source` does: both PLY, both PCD, both LAS, or both text of the same kind.
@@ -24,7 +28,7 @@ bool keeps_properties(const std::filesystem::path& source, const std::filesystem
 std::vector<std::string> other_properties(const std::filesystem::path& source, const ReadOptions& options = {});
 
 /// Writes `source`, moved, in the format that it has: coordinates change, normals and other directions turn, the
-/// viewpoint of a PCD or a PLY moves, and so do scale, offset and bounds of a LAS; every other byte is a copy:
+/// viewpoint that a PCD or a PLY states moves, and so do scale, offset and bounds of a LAS; every other byte is a copy:
 /// properties, faces, comments, cells without a point. A value that does not change keeps its text. Memory is bounded
 /// whatever the size, save for PCD binary_compressed, whose body is one block. The linear part may hold a factor of
 /// scale, which directions do not take. Nothing half-written is left. Throws FileError, also where records that hold no

@@ -80,5 +80,30 @@ TEST(ViewpointOfAFile, MovesWithThePoints) {
   EXPECT_EQ(read_points(folder / "b.pcd").viewpoint, Vector3d(10, 21, 29.5));
 }
 
+TEST(ViewpointOfAFile, TheDefaultOneOfAPcdMovesOnlyIfItIsKnownToBeTrue) {
+  const TemporaryFolder folder;
+  Transformation motion = Transformation::Identity();
+  motion.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  motion.translation() = Vector3d(10, 20, 30);
+  const auto source = folder.write("a.pcd", pcd_with("VIEWPOINT 0 0 0 1 0 0 0"));
+  write_moved(source, folder / "b.pcd", motion);
+  EXPECT_FALSE(read_points(folder / "b.pcd").viewpoint);
+  EXPECT_NE(read_bytes(folder / "b.pcd").find("VIEWPOINT 0 0 0 1 0 0 0\n"), std::string::npos);
+  write_moved(source, folder / "b.pcd", motion, {.viewpoint = Vector3d::Zero()});
+  EXPECT_EQ(read_points(folder / "b.pcd").viewpoint, Vector3d(10, 20, 30));
+}
+
+TEST(ViewpointOfAFile, WhatIsKnownTakesThePlaceOfWhatItSays) {
+  const TemporaryFolder folder;
+  Transformation motion = Transformation::Identity();
+  motion.translation() = Vector3d(10, 20, 30);
+  for (const auto& [name, content] : {std::pair("a.pcd", pcd_with("VIEWPOINT 1 0 -0.5 1 0 0 0")),
+                                      std::pair("a.ply", ply_with("comment viewpoint 1 0 -0.5"))}) {
+    const auto source = folder.write(name, content), moved = folder / (std::string("moved_") + name);
+    write_moved(source, moved, motion, {.viewpoint = Vector3d(4, 5, 6)});
+    EXPECT_EQ(read_points(moved).viewpoint, Vector3d(14, 25, 36)) << name;
+  }
+}
+
 }  // namespace
 }  // namespace igsp::io

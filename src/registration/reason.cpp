@@ -31,13 +31,19 @@ std::string percent(double share) {
 
 // Of each scan, as far as the other one's scanner can tell.
 std::string seen_through(const FreeSpace& free_space) {
-  const auto part = [](const FreeSpaceViolation& violation, std::string_view cloud) {
-    return fmt::format("{} of the {}", percent(violation.share()), cloud);
+  std::string parts, unseen;
+  const auto add = [&](const std::optional<FreeSpaceViolation>& violation, std::string_view cloud) {
+    if (!violation) return;
+    if (violation->in_view == 0) {
+      unseen += fmt::format("; the other scanner could see nothing of the {}", cloud);
+      return;
+    }
+    parts += fmt::format("{}{} of the {}", parts.empty() ? "; " : " and ", percent(violation->share()), cloud);
   };
-  std::string parts;
-  if (free_space.source) parts = part(*free_space.source, "source");
-  if (free_space.target) parts += (parts.empty() ? "" : " and ") + part(*free_space.target, "target");
-  return parts.empty() ? "" : "; " + parts + " in space that the other scanner saw through";
+  add(free_space.source, "source");
+  add(free_space.target, "target");
+  if (!parts.empty()) parts += " in space that the other scanner saw through";
+  return parts + unseen;
 }
 
 std::string in_words(const Result& result) {

@@ -28,6 +28,12 @@ double rounding_of_floats(const Bounds& bounds, const Transformation& target_fro
   return std::ldexp(largest, -24);
 }
 
+/// As it was settled, in the file's frame.
+std::optional<Eigen::Vector3d> known_viewpoint(const CloudInput& source) {
+  if (!source.viewpoint.viewpoint) return {};
+  return *source.viewpoint.viewpoint / source.scale;
+}
+
 /// x, y and z of all points, in chunks.
 void write_coordinates(const CloudInput& source, const fs::path& output, const Transformation& target_from_source,
                        bool floats, const ProgressCallback& progress) {
@@ -44,7 +50,8 @@ void write_coordinates(const CloudInput& source, const fs::path& output, const T
     return moved;
   };
   WriteOptions options{.single_precision = floats};
-  if (source.declared_viewpoint) options.viewpoint = target_from_source * *source.declared_viewpoint;
+  const std::optional<Eigen::Vector3d> known = known_viewpoint(source);
+  if (const auto& stood = known ? known : source.declared_viewpoint) options.viewpoint = target_from_source * *stood;
   write_points(output, source.total, chunks, options);
 }
 
@@ -99,8 +106,9 @@ std::vector<std::string> write_moved_output(const CloudInput& source, const fs::
     write_coordinates(source, output, target_from_source, floats, progress);
     return kept_coordinates_only(source, output);
   }
-  const bool other_type = io::write_moved(source.path, output, target_from_source,
-                                          {.read = source.options, .doubles = !floats, .progress = progress});
+  const bool other_type = io::write_moved(
+      source.path, output, target_from_source,
+      {.read = source.options, .doubles = !floats, .progress = progress, .viewpoint = known_viewpoint(source)});
   if (!other_type) return {};
   return {fmt::format("{} holds its coordinates as doubles{}", output.string(),
                       floats ? ": the integers of the source cannot hold moved ones"

@@ -9,6 +9,7 @@
 #include "files/foreign_formats.hpp"
 #include "files/moved_output.hpp"
 #include "igsp/errors.hpp"
+#include "io/file_format.hpp"
 #include "spatial/voxel_grid.hpp"
 
 namespace igsp::cli {
@@ -50,13 +51,24 @@ std::vector<fs::path> moved_files(const fs::path& folder, const Network& network
   return outputs;
 }
 
-// What write_moved_output needs to know of a scan.
-CloudInput look_at(const fs::path& scan, const fs::path& output, const ReadOptions& options) {
-  if (!moves_foreign(scan, output) && !moves_las(scan, output))
-    return sample_cloud(scan, sample_size, "write", {}, options);
+// What write_moved_output needs to know of a scan. A PCD with the default VIEWPOINT is looked at whole, since where its
+// scanner stood may be told by its points alone.
+CloudInput look_at(const fs::path& scan, const fs::path& output, const ScanReading& reading,
+                   const std::optional<Eigen::Vector3d>& viewpoint) {
   CloudInput cloud;
   cloud.path = scan;
+  if (moves_foreign(scan, output) || moves_las(scan, output)) return cloud;
+  const bool is_pcd = io::extension_of(scan) == ".pcd";
+  cloud = sample_cloud(scan, is_pcd && !viewpoint ? reading.max_points : sample_size, "write", {}, reading.read);
+  if (is_pcd && !viewpoint && !cloud.points.empty()) settle_viewpoint(cloud, {});
+  if (viewpoint) cloud.viewpoint.viewpoint = viewpoint;
   return cloud;
+}
+
+std::optional<Eigen::Vector3d> given_viewpoint(const ScanReading& reading, const fs::path& scan) {
+  const auto given = reading.viewpoints.find(scan);
+  if (given == reading.viewpoints.end()) return {};
+  return given->second;
 }
 
 }  // namespace
@@ -89,7 +101,7 @@ std::vector<std::string> write_moved_scans(const fs::path& folder, const Network
     const bool is_first = begun.insert(outputs[i]).second;
     const fs::path source = is_first ? reading.files[i] : scan_of(outputs[i], reading.files[i]);
     check_moved_output(source, outputs[i]);
-    const CloudInput cloud = look_at(source, outputs[i], reading.read);
+    const CloudInput cloud = look_at(source, outputs[i], reading, given_viewpoint(reading, reading.files[i]));
     const auto quiet = [&](const Progress&) {
       report(progress, "write", i, outputs.size());
       return true;
