@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/core_testing.hpp"
+#include "registration/pose_assessment.hpp"
 
 namespace igsp {
 namespace {
@@ -174,6 +175,50 @@ TEST(FreeSpace, BeyondTheRimOfWhatWasSeenNothingIsKnown) {
   EXPECT_EQ(image.look_at({1, 0.53, 0}).sight, RangeImage::Sight::out_of_view);
   EXPECT_EQ(image.look_at({-1, 0, 0}).sight, RangeImage::Sight::out_of_view);
   EXPECT_EQ(image.look_at({0, 0, 0}).sight, RangeImage::Sight::out_of_view);
+}
+
+TEST(FreeSpace, IsAskedAtTheFinestVoxelsOnEveryRung) {
+  const Points left = two_rooms().seen_from(left_eye, Random(1)), right = two_rooms().seen_from(right_eye, Random(2));
+  const Cloud a({left, left_eye}), b({right, right_eye});
+  const Options options = Cloud::options();
+  const ProgressCallback silent;
+  StageClock clock(silent);
+  ScaleLadder scales(
+      a.features, b.features, [](StageClock&) {}, options, clock);
+  ASSERT_GT(scales.rungs(), 1u);
+  Transformation local = shift(6, 0, 0);
+  local.translation() += a.features.origin - b.features.origin;
+  const FreeSpace at_v = free_space(a.space, b.space, local);
+  for (std::size_t rung = 0; rung < scales.rungs(); ++rung) {
+    const FreeSpace asked = assess_pose(scales, rung, local, 1).free_space;
+    EXPECT_EQ(asked.source->contradicting, at_v.source->contradicting);
+    EXPECT_EQ(asked.target->in_view, at_v.target->in_view);
+  }
+}
+
+// Lines of a scanner that lie farther apart than the aperture is wide.
+TEST(RangeImage, BetweenTwoScanLinesTheApertureGrows) {
+  Points wall;
+  for (double z = -1.2; z < 1.3; z += 0.3)
+    for (double y = -1; y < 1; y += 0.01) wall.push_back({2, y, z});
+  const RangeImage image(wall, Vector3d::Zero(), voxel_size);
+  const RangeImage::Look between = image.look_at({1, 0, 0.075});
+  EXPECT_EQ(between.sight, RangeImage::Sight::empty);
+  EXPECT_GT(between.growth, 1);
+  EXPECT_EQ(image.look_at({1.5, 0, 0.11}).sight, RangeImage::Sight::possible);  // with it grows what is tolerated
+}
+
+TEST(RangeImage, GroundBetweenTwoScanLinesIsNotEmpty) {
+  Points ground;
+  constexpr double height = 1.5, degree = std::numbers::pi / 180;
+  for (double below = 2.62; below < 30; below += 2)
+    for (double yaw = 0; yaw < 360; yaw += 0.1) {
+      const double r = height / std::tan(below * degree);
+      ground.push_back({r * std::cos(yaw * degree), r * std::sin(yaw * degree), -height});
+    }
+  const RangeImage image(ground, Vector3d::Zero(), voxel_size);
+  for (double below = 5; below < 25; below += 0.1)
+    EXPECT_NE(image.look_at({height / std::tan(below * degree), 0, -height}).sight, RangeImage::Sight::empty) << below;
 }
 
 TEST(RangeImage, IsTheSameWhereverItIsTurned) {

@@ -33,6 +33,8 @@ Rematch matched_again(CommonFrame& frame, const Transformation& pose, int degree
   if (!ask_free_space) return by_vote;
   by_vote.evidence = ask_free_space(by_vote.target_from_source);
   Rematch in_place = fit_in_place(frame, pose, by_vote.matches, degrees_of_freedom);
+  const double v = frame.target().features.voxel_size;
+  if (same_pose(in_place.target_from_source, by_vote.target_from_source, Eigen::Vector3d::Zero(), v)) return by_vote;
   in_place.evidence = ask_free_space(in_place.target_from_source);
   return promise_of(in_place) > promise_of(by_vote) ? in_place : by_vote;
 }
