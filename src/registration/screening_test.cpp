@@ -60,13 +60,14 @@ TEST(Screening, WhatFreeSpaceContradictsIsNoClearWinnerAndComesLater) {
   const auto is_the_right_one = [&](const Transformation& pose) {
     return (pose.linear() - scene.truth.linear()).norm() < 0.05;
   };
-  const auto against = [&](const Transformation& pose) { return is_the_right_one(pose) ? -2.0 : 0.0; };
-  const auto against_others = [&](const Transformation& pose) { return is_the_right_one(pose) ? 0.0 : -2.0; };
+  const FreeSpace empty{FreeSpaceViolation{1000, 0}, std::nullopt}, filled{FreeSpaceViolation{1000, 200}, std::nullopt};
+  const auto against = [&](const Transformation& pose) { return is_the_right_one(pose) ? filled : empty; };
+  const auto against_others = [&](const Transformation& pose) { return is_the_right_one(pose) ? empty : filled; };
   const std::vector<Rematch> screened = screen(frame, proposals(scene, 0, 20, 9), Options(), against, silent);
   EXPECT_EQ(screened.size(), proposed);
   const auto place = std::ranges::find_if(screened, is_the_right_one, &Rematch::target_from_source);
   ASSERT_NE(place, screened.end());
-  EXPECT_EQ(place->evidence, -2.0);
+  EXPECT_EQ(place->free_space.source->contradicting, 200u);
   EXPECT_EQ(screen(other, proposals(scene, 0, 20, 9), Options(), against_others, silent).size(), 1u);
 }
 
