@@ -31,9 +31,9 @@ class ScannedSpace {
 };
 
 /// What it says of a pose, as log10 odds that it is right; exactly 0 where no viewpoint is known. `rarity`: how rare it
-/// is among wrong poses of the pair to be contradicted as little [decades]. docs/verdict.md tells how the numbers were
-/// found.
-double free_space_evidence(const FreeSpace& free_space, double rarity);
+/// is among wrong poses of the pair to be contradicted as little [decades]. `voxels`: of a cloud on the rung that asks.
+/// docs/verdict.md tells how the numbers were found.
+double free_space_evidence(const FreeSpace& free_space, double rarity, double voxels);
 
 /// The third question to the poses of a pair: the scanners saw through this space, so is it empty? Both directions, of
 /// those whose viewpoint is known. Refers to the features.
@@ -52,8 +52,8 @@ class PairSpace {
   /// contradicted: nothing in a corridor, much in a furnished room.
   void note_proposal(const FreeSpace& free_space) { proposed_.push_back(free_space.violation()); }
 
-  /// By the rarity among what was proposed.
-  double evidence(const FreeSpace& free_space) const;
+  /// With the rarity among what was proposed.
+  double evidence(const FreeSpace& free_space, double voxels) const;
 
  private:
   ScannedSpace source_, target_;

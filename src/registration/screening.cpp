@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <limits>
 
 #include "registration/each_pose.hpp"
 #include "registration/free_space.hpp"
@@ -16,18 +17,21 @@ constexpr double enough_agreement = 0.6;
 constexpr double rival_inliers = 0.5;  // of the winner's
 constexpr double matches_weight = 2;   // as in the quality of a pose
 
-// Who is contradicted little is ahead of who is contradicted as most are by as much as ten times the matches.
-constexpr double rarity = 1;
+// Free space puts proposals in order as if one in ten were contradicted as little as they are, whatever the rung.
+constexpr double rarity = 1, voxels = std::numeric_limits<double>::max();
+
+double evidence_of(const Rematch& match) {
+  return free_space_evidence(match.free_space, rarity, voxels);
+}
 
 bool is_clear(const Rematch& match) {
-  return free_space_evidence(match.free_space, rarity) >= 0 && match.agreeing >= enough_agreeing &&
+  return evidence_of(match) >= 0 && match.agreeing >= enough_agreeing &&
          static_cast<double>(match.agreeing) >= enough_agreement * static_cast<double>(match.matches.size());
 }
 
 // What the quality of a pose has of both, in decades.
 double promise_of(const Rematch& match) {
-  return matches_weight * std::log10(static_cast<double>(match.agreeing) + 1) +
-         free_space_evidence(match.free_space, rarity);
+  return matches_weight * std::log10(static_cast<double>(match.agreeing) + 1) + evidence_of(match);
 }
 
 // The pose with the most matches has the promise of them; where free space can tell like places apart, the better of
