@@ -207,6 +207,22 @@ TEST(FreeSpace, IsAskedAtTheFinestVoxelsOnEveryRung) {
   }
 }
 
+// Beside a pole that was seen, before a wall of which every so often one line was: nobody looked so closely there.
+TEST(FreeSpace, BetweenScanLinesWhatLiesBesideASurfaceIsForgivenFromFartherOff) {
+  Points seen;
+  for (double z = -1.2; z < 1.3; z += 0.3)
+    for (double y = -1; y < 1; y += 0.01) seen.push_back({2, y, z});
+  for (double z = -0.8; z < 0.8; z += 0.01) seen.push_back({1, 0.4, z});
+  Points beside;
+  for (double y = -0.05; y < 0.05; y += 0.01)
+    for (double z = 0.06; z < 0.09; z += 0.01) beside.push_back({1, y, z});
+  const FreeSpace f = violations(beside, {seen, Vector3d::Zero()});
+  EXPECT_GT(f.source->in_view, 0u);
+  EXPECT_EQ(f.source->contradicting, 0u);
+  const FreeSpace alone = violations(beside, {Points(seen.begin(), seen.begin() + 1800), Vector3d::Zero()});
+  EXPECT_EQ(alone.source->contradicting, alone.source->in_view);  // without the pole
+}
+
 // Lines of a scanner that lie farther apart than the aperture is wide.
 TEST(RangeImage, BetweenTwoScanLinesTheApertureGrows) {
   Points wall;
