@@ -15,8 +15,8 @@ constexpr double on_surface = 3.0;  // voxels
 constexpr double tolerated = 0.035;
 constexpr double decades_per_share = 20, most_decades_against = 2;  // beyond what is tolerated
 
-// For a pose that nothing contradicts: by the decades of the proposals that are contradicted no more, less what right
-// poses have of that. Scenes where proposals are not contradicted are like themselves elsewhere.
+// A pose that nothing contradicts gains by the rarity of that among the proposals, of which a little is asked of every
+// pose: scenes whose proposals are not contradicted are like themselves elsewhere.
 constexpr double decades_for = 1.3, asked_for = 0.4;
 constexpr double most_rarity = 2;  // decades
 constexpr double alike = 0.003;    // violations, of a few hundred looks
@@ -82,6 +82,7 @@ double free_space_evidence(const FreeSpace& free_space, double rarity, double vo
 }
 
 double PairSpace::evidence(const FreeSpace& free_space, double voxels) const {
+  if (proposed_.empty()) return free_space_evidence(free_space, usual_rarity, voxels);
   const double limit = free_space.violation() + alike;
   const auto as_little = static_cast<double>(std::ranges::count_if(proposed_, [&](double v) { return v <= limit; }));
   return free_space_evidence(free_space, std::log10((static_cast<double>(proposed_.size()) + 2) / (as_little + 1)),

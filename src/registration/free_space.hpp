@@ -30,10 +30,11 @@ class ScannedSpace {
   std::optional<Seen> seen_;  // where the viewpoint is known
 };
 
-/// What it says of a pose, as log10 odds that it is right; exactly 0 where no viewpoint is known. `rarity`: how rare it
-/// is among wrong poses of the pair to be contradicted as little [decades]. `voxels`: of a cloud on the rung that asks.
-/// docs/verdict.md tells how the numbers were found.
+/// What free space says of a pose, as log10 odds that it is right; exactly 0 where no viewpoint is known. `rarity`: how
+/// rare it is among wrong poses of the pair to be contradicted as little [decades]. `voxels`: of a cloud on the rung
+/// that asks. docs/verdict.md tells how the numbers were found.
 double free_space_evidence(const FreeSpace& free_space, double rarity, double voxels);
+constexpr double usual_rarity = 1;  ///< one in ten, where no proposals tell
 
 /// The third question to the poses of a pair: the scanners saw through this space, so is it empty? Both directions, of
 /// those whose viewpoint is known. Refers to the features.
@@ -52,7 +53,7 @@ class PairSpace {
   /// contradicted: nothing in a corridor, much in a furnished room.
   void note_proposal(const FreeSpace& free_space) { proposed_.push_back(free_space.violation()); }
 
-  /// With the rarity among what was proposed.
+  /// With the rarity among what was proposed, or the usual one where nothing was, as from an initial guess.
   double evidence(const FreeSpace& free_space, double voxels) const;
 
  private:

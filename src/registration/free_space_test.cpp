@@ -172,6 +172,9 @@ TEST(FreeSpace, WhatEveryProposalHasIsWorthNothing) {
   }
   EXPECT_GT(furnished.evidence(empty, 10000), 1.5);
   EXPECT_LT(corridor.evidence(empty, 10000), 0);
+  const PairSpace unsearched(room.features, room.features);
+  EXPECT_EQ(unsearched.evidence(empty, 10000), free_space_evidence(empty, usual_rarity, 10000));
+  EXPECT_LT(unsearched.evidence(filled, 10000), -1.5);
   EXPECT_EQ(furnished.evidence(filled, 10000), corridor.evidence(filled, 10000));
   EXPECT_LT(furnished.evidence(empty, 300), 0);  // too coarse for what matches and contact say
 }

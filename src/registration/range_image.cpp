@@ -19,7 +19,8 @@ constexpr double max_offset = 0.5;  // of their mean from the direction, in aper
 // Farther away it would cost digits and change nothing: lines of sight are parallel to a millionth.
 constexpr double farthest = 1e6;  // of the cloud's size
 
-// What was seen within an aperture about a direction.
+// What was seen within an aperture about a direction. In which order Eigen sums up three floats depends on the
+// processor, that of doubles does not.
 struct Window {
   int seen = 0;
   double nearest = std::numeric_limits<double>::infinity();

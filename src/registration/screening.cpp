@@ -17,11 +17,10 @@ constexpr double enough_agreement = 0.6;
 constexpr double rival_inliers = 0.5;  // of the winner's
 constexpr double matches_weight = 2;   // as in the quality of a pose
 
-// Free space puts proposals in order as if one in ten were contradicted as little as they are, whatever the rung.
-constexpr double rarity = 1, voxels = std::numeric_limits<double>::max();
+constexpr double voxels = std::numeric_limits<double>::max();  // free space orders proposals alike on every rung
 
 double evidence_of(const Rematch& match) {
-  return free_space_evidence(match.free_space, rarity, voxels);
+  return free_space_evidence(match.free_space, usual_rarity, voxels);
 }
 
 bool is_clear(const Rematch& match) {
