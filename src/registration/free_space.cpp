@@ -18,11 +18,8 @@ constexpr double decades_per_share = 20, most_decades_against = 2;  // beyond wh
 // A pose that nothing contradicts gains by the rarity of that among the proposals, of which a little is asked of every
 // pose: scenes whose proposals are not contradicted are like themselves elsewhere.
 constexpr double decades_for = 1.3, asked_for = 0.4;
-constexpr double most_rarity = 2;  // decades
-constexpr double alike = 0.003;    // violations, of a few hundred looks
-// On larger voxels matches and contact tell less of what free space is to confirm: nothing for the first number of
-// them, all for the second.
-constexpr double coarse_voxels = 300, fine_voxels = 3000;
+constexpr double most_rarity = 2;        // decades
+constexpr double alike = 0.003;          // violations, of a few hundred looks
 constexpr double convincing_view = 100;  // points in view for half of that
 
 // Points in view that agree, added to those that are there: few prove little.
@@ -68,12 +65,10 @@ std::optional<FreeSpaceViolation> ScannedSpace::violation_by(const ScannedSpace&
   return violation;
 }
 
-double free_space_evidence(const FreeSpace& free_space, double rarity, double voxels) {
+double free_space_evidence(const FreeSpace& free_space, double rarity, double weight) {
   const double violation = free_space.violation();
-  const double resolution =
-      std::clamp(std::log(voxels / coarse_voxels) / std::log(fine_voxels / coarse_voxels), 0.0, 1.0);
   const double uncontradicted = std::max(0.0, 1 - violation / tolerated);
-  const double gained = decades_for * std::min(rarity, most_rarity) * resolution * uncontradicted;
+  const double gained = decades_for * std::min(rarity, most_rarity) * weight * uncontradicted;
   double evidence = 0;
   for (const auto& direction : {free_space.source, free_space.target}) {
     if (direction) evidence += 0.5 * (gained * conviction_of(*direction) - asked_for);
@@ -81,12 +76,12 @@ double free_space_evidence(const FreeSpace& free_space, double rarity, double vo
   return evidence - std::min(decades_per_share * std::max(0.0, violation - tolerated), most_decades_against);
 }
 
-double PairSpace::evidence(const FreeSpace& free_space, double voxels) const {
-  if (proposed_.empty()) return free_space_evidence(free_space, usual_rarity, voxels);
+double PairSpace::evidence(const FreeSpace& free_space, double weight) const {
+  if (proposed_.empty()) return free_space_evidence(free_space, usual_rarity, weight);
   const double limit = free_space.violation() + alike;
   const auto as_little = static_cast<double>(std::ranges::count_if(proposed_, [&](double v) { return v <= limit; }));
   return free_space_evidence(free_space, std::log10((static_cast<double>(proposed_.size()) + 2) / (as_little + 1)),
-                             voxels);
+                             weight);
 }
 
 }  // namespace igsp

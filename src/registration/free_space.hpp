@@ -31,9 +31,9 @@ class ScannedSpace {
 };
 
 /// What free space says of a pose, as log10 odds that it is right; exactly 0 where no viewpoint is known. `rarity`: how
-/// rare it is among wrong poses of the pair to be contradicted as little [decades]. `voxels`: of a cloud on the rung
-/// that asks. docs/verdict.md tells how the numbers were found.
-double free_space_evidence(const FreeSpace& free_space, double rarity, double voxels);
+/// rare it is among wrong poses of the pair to be contradicted as little [decades]. `weight`: of what that confirms,
+/// [0, 1]. docs/verdict.md tells how the numbers were found.
+double free_space_evidence(const FreeSpace& free_space, double rarity, double weight);
 constexpr double usual_rarity = 1;  ///< one in ten, where no proposals tell
 
 /// The third question to the poses of a pair: the scanners saw through this space, so is it empty? Both directions, of
@@ -54,7 +54,7 @@ class PairSpace {
   void note_proposal(const FreeSpace& free_space) { proposed_.push_back(free_space.violation()); }
 
   /// With the rarity among what was proposed, or the usual one where nothing was, as from an initial guess.
-  double evidence(const FreeSpace& free_space, double voxels) const;
+  double evidence(const FreeSpace& free_space, double weight) const;
 
  private:
   ScannedSpace source_, target_;

@@ -149,9 +149,9 @@ TEST(FreeSpace, FewInViewSayLittle) {
 }
 
 TEST(FreeSpace, EvidenceIsForWhatIsEmptyAndAgainstWhatIsNot) {
-  EXPECT_EQ(free_space_evidence({}, 1, 10000), 0);  // to the bit: without viewpoints two questions decide
+  EXPECT_EQ(free_space_evidence({}, 1, 1), 0);  // to the bit: without viewpoints two questions decide
   const FreeSpaceViolation none{1000, 0}, some{1000, 10}, people{1000, 36}, wall{1000, 300};
-  const auto evidence = [](auto... directions) { return free_space_evidence(FreeSpace{directions...}, 1, 10000); };
+  const auto evidence = [](auto... directions) { return free_space_evidence(FreeSpace{directions...}, 1, 1); };
   EXPECT_GT(evidence(none, none), evidence(none, std::nullopt));
   EXPECT_GT(evidence(none, std::nullopt), evidence(some, std::nullopt));
   EXPECT_LT(evidence(people, people), 0);
@@ -170,13 +170,13 @@ TEST(FreeSpace, WhatEveryProposalHasIsWorthNothing) {
     furnished.note_proposal(filled);
     corridor.note_proposal(empty);
   }
-  EXPECT_GT(furnished.evidence(empty, 10000), 1.5);
-  EXPECT_LT(corridor.evidence(empty, 10000), 0);
+  EXPECT_GT(furnished.evidence(empty, 1), 1.5);
+  EXPECT_LT(corridor.evidence(empty, 1), 0);
   const PairSpace unsearched(room.features, room.features);
-  EXPECT_EQ(unsearched.evidence(empty, 10000), free_space_evidence(empty, usual_rarity, 10000));
-  EXPECT_LT(unsearched.evidence(filled, 10000), -1.5);
-  EXPECT_EQ(furnished.evidence(filled, 10000), corridor.evidence(filled, 10000));
-  EXPECT_LT(furnished.evidence(empty, 300), 0);  // too coarse for what matches and contact say
+  EXPECT_EQ(unsearched.evidence(empty, 1), free_space_evidence(empty, usual_rarity, 1));
+  EXPECT_LT(unsearched.evidence(filled, 1), -1.5);
+  EXPECT_EQ(furnished.evidence(filled, 1), corridor.evidence(filled, 1));
+  EXPECT_LT(furnished.evidence(empty, 0), 0);  // nothing else speaks for the pose
 }
 
 TEST(FreeSpace, BeyondTheRimOfWhatWasSeenNothingIsKnown) {

@@ -29,6 +29,20 @@ double quality_of(const PoseAssessment& pose) {
 // pose of a third. Right ones of that overlap have more of both.
 constexpr double undemanding_overlap = 0.4, demanding_overlap = 0.7, decades_per_overlap = 3.0;
 
+// Free space confirms what contact and matches say, not in place of them: that is little on large voxels, nothing for
+// the first number of them and all for the second, and where surfaces cross. Right poses of clean scans touch at 0.8
+// and more; one of the bunny was 5.4 degrees off at 0.72.
+constexpr double coarse_voxels = 300, fine_voxels = 3000;
+constexpr double crossing = 0.7, lying = 0.8;
+
+double weight_of_free_space(const PoseAssessment& pose, const CommonFrame& frame) {
+  const double voxels = std::sqrt(static_cast<double>(frame.source().features.points.size()) *
+                                  static_cast<double>(frame.target().features.points.size()));
+  const double contact = std::sqrt(pose.source_on_target.share * pose.target_on_source.share);
+  return std::clamp(std::log(voxels / coarse_voxels) / std::log(fine_voxels / coarse_voxels), 0.0, 1.0) *
+         std::clamp((contact - crossing) / (lying - crossing), 0.0, 1.0);
+}
+
 }  // namespace
 
 double PoseAssessment::overlap() const {
@@ -62,9 +76,8 @@ PoseAssessment assess_pose(ScaleLadder& scales, std::size_t rung, const Transfor
   assessment.agreeing_matches =
       count_inliers(matches, target_from_source, agreeing_distance * frame.target().features.voxel_size);
   assessment.free_space = scales.space().at(target_from_source);
-  const double voxels = std::sqrt(static_cast<double>(frame.source().features.points.size()) *
-                                  static_cast<double>(frame.target().features.points.size()));
-  assessment.free_space_evidence = scales.space().evidence(assessment.free_space, voxels);
+  assessment.free_space_evidence =
+      scales.space().evidence(assessment.free_space, weight_of_free_space(assessment, frame));
   assessment.quality = quality_of(assessment) + assessment.free_space_evidence;
   return assessment;
 }

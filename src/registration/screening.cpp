@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <limits>
 
 #include "registration/each_pose.hpp"
 #include "registration/free_space.hpp"
@@ -17,10 +16,8 @@ constexpr double enough_agreement = 0.6;
 constexpr double rival_inliers = 0.5;  // of the winner's
 constexpr double matches_weight = 2;   // as in the quality of a pose
 
-constexpr double voxels = std::numeric_limits<double>::max();  // free space orders proposals alike on every rung
-
 double evidence_of(const Rematch& match) {
-  return free_space_evidence(match.free_space, usual_rarity, voxels);
+  return free_space_evidence(match.free_space, usual_rarity, 1);
 }
 
 bool is_clear(const Rematch& match) {
