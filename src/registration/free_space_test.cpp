@@ -210,6 +210,27 @@ TEST(FreeSpace, IsAskedAtTheFinestVoxelsOnEveryRung) {
   }
 }
 
+TEST(FreeSpace, ConfirmsWhatTouchesAndNotWhatCrosses) {
+  const Points left = two_rooms().seen_from(left_eye, Random(1)), again = two_rooms().seen_from(left_eye, Random(3));
+  const Cloud a({left, left_eye}), b({again, left_eye});
+  const ProgressCallback silent;
+  const Options options = Cloud::options();
+  StageClock clock(silent);
+  ScaleLadder scales(
+      a.features, b.features, [](StageClock&) {}, options, clock);
+  const auto assess = [&](double yaw) {
+    Transformation local(Eigen::AngleAxisd(yaw, Vector3d::UnitZ()));
+    const Vector3d about = left_eye;
+    local.translation() = local.linear() * (a.features.origin - about) + about - b.features.origin;
+    return assess_pose(scales, 0, local, 1);
+  };
+  const PoseAssessment right = assess(0), crossing = assess(0.1);
+  EXPECT_NEAR(right.free_space_evidence, free_space_evidence(right.free_space, usual_rarity, 1), 0.01);
+  EXPECT_GT(right.free_space_evidence, 0.5);
+  EXPECT_LT(crossing.free_space.violation(), 0.03);
+  EXPECT_NEAR(crossing.free_space_evidence, free_space_evidence(crossing.free_space, usual_rarity, 0), 0.01);
+}
+
 // Beside a pole that was seen, before a wall of which every so often one line was: nobody looked so closely there.
 TEST(FreeSpace, BetweenScanLinesWhatLiesBesideASurfaceIsForgivenFromFartherOff) {
   Points seen;
