@@ -1,6 +1,7 @@
-// Are the covariances of a network's poses what they say? Simulated stations, each drawn many times with another sampling
-// pattern and other noise of the scanner, refined jointly from the true poses over all pairs that overlap; the squared
-// error of every pose, normalised by its covariance, against chi-square with 6 degrees of freedom. docs/covariance.md
+// Are the covariances of a network's poses what they say? Simulated stations, each drawn many times with another
+// sampling pattern and other noise of the scanner, refined jointly from the true poses over all pairs that overlap; the
+// squared error of every pose, normalised by its covariance, against chi-square with 6 degrees of freedom.
+// docs/covariance.md
 //
 // usage: igsp_network_covariance [SCENE [SEEDS [DRAWS [STATIONS [POINTS]]]]]
 #include <fmt/format.h>
@@ -25,7 +26,7 @@ namespace {
 using namespace igsp;
 
 constexpr double chi_square_50 = 5.348, chi_square_95 = 12.592;
-constexpr int dense = 5;            // times as many points as are drawn, so that two draws share few
+constexpr int dense = 5;             // times as many points as are drawn, so that two draws share few
 constexpr double min_overlap = 0.3;  // of the pairs that become links
 
 double noise_of(const std::string& scene) {
@@ -105,10 +106,11 @@ std::vector<double> squares_of_site(const std::string& scene, std::uint64_t seed
   for (int d = 0; d < draws; ++d) {
     std::vector<Features> features;
     for (const SimulatedScan& scan : site) {
-      features.push_back(extract_features(
-          drawn(scan.points, static_cast<std::size_t>(points), noise_of(scene), random), options));
+      features.push_back(
+          extract_features(drawn(scan.points, static_cast<std::size_t>(points), noise_of(scene), random), options));
     }
-    FeatureShelf shelf(site.size(), [&](std::size_t i) { return features[i]; }, 0);
+    FeatureShelf shelf(
+        site.size(), [&](std::size_t i) { return features[i]; }, 0);
     Network network = truth;
     refine_jointly(network, shelf, scanners, network_options, std::vector<bool>(truth.components.size()));
     const std::vector<double> some = squares_of(network, site);
@@ -128,8 +130,7 @@ int main(int count, char** arguments) {
   const int seeds = number(2, 10), draws = number(3, 10), stations = number(4, 5), points = number(5, 40000);
   std::vector<double> squares;
   for (int seed = 1; seed <= seeds; ++seed) {
-    const std::vector<double> some =
-        squares_of_site(scene, static_cast<std::uint64_t>(seed), draws, stations, points);
+    const std::vector<double> some = squares_of_site(scene, static_cast<std::uint64_t>(seed), draws, stations, points);
     squares.insert(squares.end(), some.begin(), some.end());
   }
   std::ranges::sort(squares);

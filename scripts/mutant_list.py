@@ -87,7 +87,7 @@ MUTANTS = [
     ("registration/screening.cpp", "std::max(winner_inliers, batch[i].inliers)", "batch[i].inliers", "the strongest clear winner counts"),
     ("registration/screening.cpp", "if (is_clear(found[i])) winner", "if (true) winner", "only a clear winner spares the others"),
     ("registration/screening.cpp", "std::min(size, hypotheses.size() - begin)", "std::min<std::size_t>(1, hypotheses.size() - begin)", "all hypotheses of a batch"),
-    ("registration/screening.cpp", "std::greater(), &Rematch::agreeing", "std::less(), &Rematch::agreeing", "most agreeing matches first"),
+    ("registration/screening.cpp", "std::greater(), promise_of", "std::less(), promise_of", "most agreeing matches first"),
     ("registration/each_pose.hpp", "results[i] = look(poses[i]);", "results[i] = look(poses[begin]);", "each pose is looked into"),
     # Contact and verdict
     ("registration/surface_contact.cpp", "touching = 1.0;", "touching = 4.0;", "what touches"),
@@ -108,8 +108,8 @@ MUTANTS = [
     ("registration/free_space.cpp", "1 - violation->share() / tolerated", "1 + violation->share() / tolerated", "what is contradicted confirms nothing"),
     ("registration/free_space.cpp", "free_space.violation() - tolerated)", "free_space.violation())", "tolerance of the violation"),
     ("registration/free_space.cpp", "- std::min(contradicted, most_decades_against)", "+ std::min(contradicted, most_decades_against)", "sign of the violation"),
-    ("registration/free_space.cpp", "reach) < 0) ++violation.contradicting", "reach) >= 0) ++violation.contradicting", "what lies on a surface does not contradict"),
-    ("registration/free_space.cpp", "free_space_violation(target, source, target_from_source.inverse())", "free_space_violation(target, source, target_from_source)", "direction of the second view"),
+    ("registration/free_space.cpp", "static_cast<float>(reach)) < 0)", "static_cast<float>(reach)) >= 0)", "what lies on a surface does not contradict"),
+    ("registration/free_space.cpp", "target_from_source.inverse(), most_looks)", "target_from_source, most_looks)", "direction of the second view"),
     # Refinement, precision and scale
     ("registration/point_to_plane.cpp", "(p - centre).cross(n), n,", "n.cross(p - centre), n,", "lever of a rotation"),
     ("registration/point_to_plane.cpp", "information += weight * jacobian", "information += jacobian", "weights of the information"),

@@ -139,7 +139,8 @@ class Bundle {
     return equations;
   }
 
-  // At the poses as they are, and nothing but the damping. The larger one moves, as it did when the pair was registered.
+  // At the poses as they are, and nothing but the damping. The larger one moves, as it did when the pair was
+  // registered.
   RelativeFactor factor_between(const NetworkLink& link) const {
     const bool exchanged = surfaces_[link.target]->voxels() > surfaces_[link.source]->voxels();
     RelativeFactor factor;
@@ -154,9 +155,8 @@ class Bundle {
   // The loss follows the residuals of the step before, as it does where a pair is refined.
   RelativeFactor factor(const NetworkLink& link, double radius, double& loss_scale) const {
     RelativeFactor result = factor_between(link);
-    const Linearisation at_pose =
-        linearise_at(surfaces_[result.source]->surface(), surfaces_[result.target]->surface(),
-                     result.target_from_source, radius, max_points, 1, loss_scale);
+    const Linearisation at_pose = linearise_at(surfaces_[result.source]->surface(), surfaces_[result.target]->surface(),
+                                               result.target_from_source, radius, max_points, 1, loss_scale);
     loss_scale = loss_scale_of(at_pose.residual_variance, search_radius, 1);
     result.centre = at_pose.centre;
     if (at_pose.pairs >= min_pairs && at_pose.residual_variance > 0) {

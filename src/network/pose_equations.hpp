@@ -61,8 +61,8 @@ class PoseEquations {
   int size_;                          // of a step: its last entries
   std::vector<std::size_t> unknown_;  // place among the unknowns
   std::size_t unknowns_ = 0;
-  Entries information_, scatter_;        // without that of `shared_`
-  std::vector<RelativeFactor> shared_;   // factors with a scatter of their own
+  Entries information_, scatter_;       // without that of `shared_`
+  std::vector<RelativeFactor> shared_;  // factors with a scatter of their own
   Eigen::VectorXd gradient_;
 };
 

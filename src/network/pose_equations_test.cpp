@@ -16,7 +16,8 @@ struct Links {
   std::vector<Eigen::Vector3d> centres;
   std::vector<RelativeFactor> factors;
 
-  explicit Links(std::size_t scans) : poses(scans, Transformation::Identity()), centres(scans, Eigen::Vector3d::Zero()) {}
+  explicit Links(std::size_t scans)
+      : poses(scans, Transformation::Identity()), centres(scans, Eigen::Vector3d::Zero()) {}
 
   void link(std::size_t source, std::size_t target, const Matrix6& information, bool shares_errors) {
     RelativeFactor& factor = factors.emplace_back();

@@ -109,25 +109,44 @@ std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d&
   return matches;
 }
 
-Rematch rematch(CommonFrame& frame, const Transformation& hypothesis, int degrees_of_freedom, int threads) {
-  const double voxel_size = frame.target().features.voxel_size;
-  const double tolerance = agreeing_distance * voxel_size;
-  Rematch best{hypothesis, mutual_matches(frame, hypothesis.linear(), threads), 0};
-  best.agreeing = count_inliers(best.matches, hypothesis, tolerance);
-  if (best.matches.empty()) return best;
+namespace {
+
+// Fits from `start` on, and keeps the better of both poses.
+void fit_from(const Transformation& start, double voxel_size, int degrees_of_freedom, Rematch& best) {
   std::array<double, fit_scales.size()> scales;
   for (std::size_t i = 0; i < scales.size(); ++i) scales[i] = fit_scales[i] * voxel_size;
+  const auto fit = robust_fit(best.matches, start, scales, degrees_of_freedom);
+  if (!fit) return;
+  const std::size_t agreeing = count_inliers(best.matches, *fit, agreeing_distance * voxel_size);
+  if (agreeing <= best.agreeing) return;
+  best.agreeing = agreeing;
+  best.target_from_source = *fit;
+}
+
+Rematch not_moved(const Transformation& hypothesis, std::vector<PointPair> matches, double voxel_size) {
+  const std::size_t agreeing = count_inliers(matches, hypothesis, agreeing_distance * voxel_size);
+  return {hypothesis, std::move(matches), agreeing, 0};
+}
+
+}  // namespace
+
+Rematch rematch(CommonFrame& frame, const Transformation& hypothesis, int degrees_of_freedom, int threads) {
+  const double voxel_size = frame.target().features.voxel_size;
+  Rematch best = not_moved(hypothesis, mutual_matches(frame, hypothesis.linear(), threads), voxel_size);
+  if (best.matches.empty()) return best;
   for (const double radius : mode_radii) {
     Transformation start = hypothesis;
     start.translation() = translation_mode(best.matches, hypothesis.linear(), radius * voxel_size);
-    const auto fit = robust_fit(best.matches, start, scales, degrees_of_freedom);
-    if (!fit) continue;
-    const std::size_t agreeing = count_inliers(best.matches, *fit, tolerance);
-    if (agreeing > best.agreeing) {
-      best.agreeing = agreeing;
-      best.target_from_source = *fit;
-    }
+    fit_from(start, voxel_size, degrees_of_freedom, best);
   }
+  return best;
+}
+
+Rematch fit_in_place(const CommonFrame& frame, const Transformation& hypothesis, std::vector<PointPair> matches,
+                     int degrees_of_freedom) {
+  const double voxel_size = frame.target().features.voxel_size;
+  Rematch best = not_moved(hypothesis, std::move(matches), voxel_size);
+  fit_from(hypothesis, voxel_size, degrees_of_freedom, best);
   return best;
 }
 

@@ -51,9 +51,14 @@ struct Rematch {
   Transformation target_from_source;
   std::vector<PointPair> matches;  ///< mutual nearest neighbours
   std::size_t agreeing = 0;        ///< of them, within 2.5 voxels
+  double evidence = 0;             ///< of free space, log10 odds that the pose is right; 0: not asked
 };
 
 /// Matches again, votes for the translation (mode of b - R a) and fits robustly; keeps the better of both poses.
 Rematch rematch(CommonFrame& frame, const Transformation& hypothesis, int degrees_of_freedom, int threads);
+
+/// With the same matches, but fitted where the hypothesis is: among like rooms the vote may go to another one.
+Rematch fit_in_place(const CommonFrame& frame, const Transformation& hypothesis, std::vector<PointPair> matches,
+                     int degrees_of_freedom);
 
 }  // namespace igsp

@@ -110,5 +110,23 @@ TEST(Rematch, OfNoKeypointsKeepsTheHypothesis) {
   EXPECT_EQ(found.agreeing, 0u);
 }
 
+TEST(FitInPlace, StaysWhereTheVoteWouldGoToAnotherRoom) {
+  const testing::Scene scene(2);
+  const CommonFrame frame = scene.frame();
+  testing::Random random(8);
+  std::vector<PointPair> matches;
+  const Eigen::Vector3d next_room(5, 0, 0);
+  for (int i = 0; i < 30; ++i) {
+    const Eigen::Vector3d place = random.in_cube(3), error = 0.02 * random.in_cube(1);
+    matches.push_back({place, place + error + (i < 10 ? Eigen::Vector3d::Zero() : next_room)});
+  }
+  Transformation near = Transformation::Identity();
+  near.translation() = Eigen::Vector3d(0.25, -0.2, 0.1);
+  const Rematch found = fit_in_place(frame, near, matches, 6);
+  EXPECT_EQ(found.agreeing, 10u);
+  EXPECT_LT(found.target_from_source.translation().norm(), 0.03);
+  EXPECT_EQ(found.matches.size(), matches.size());
+}
+
 }  // namespace
 }  // namespace igsp

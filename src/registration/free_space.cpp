@@ -6,8 +6,6 @@
 namespace igsp {
 namespace {
 
-constexpr std::size_t max_looks = 1000;
-
 // Surfaces end somewhere between two points and may be met at a grazing angle: what lies on one that was seen, or just
 // beyond its rim, does not contradict, however it is seen.
 constexpr double on_surface = 3.0;  // voxels
@@ -31,9 +29,9 @@ double confirmed_by(const std::optional<FreeSpaceViolation>& violation) {
   return std::max(0.0, 1 - violation->share() / tolerated) * in_view / (in_view + convincing_view);
 }
 
-double resolution(const PreparedCloud& source, const PreparedCloud& target) {
-  const double voxels = std::sqrt(static_cast<double>(source.features.points.size()) *
-                                  static_cast<double>(target.features.points.size()));
+double resolution(const Features& source, const Features& target) {
+  const double voxels =
+      std::sqrt(static_cast<double>(source.points.size()) * static_cast<double>(target.points.size()));
   return std::clamp(std::log(voxels / coarse_voxels) / std::log(fine_voxels / coarse_voxels), 0.0, 1.0);
 }
 
@@ -47,31 +45,38 @@ double FreeSpace::violation() const {
   return std::max(source ? source->share() : 0.0, target ? target->share() : 0.0);
 }
 
-std::optional<FreeSpaceViolation> free_space_violation(const PreparedCloud& moved, const PreparedCloud& fixed,
-                                                       const Transformation& fixed_from_moved) {
-  if (!fixed.range_image) return {};
+ScannedSpace::ScannedSpace(const Features& features) : features_(features) {
+  if (!features.viewpoint) return;
+  seen_.emplace(PointGrid(features.points, on_surface * features.voxel_size),
+                RangeImage(features.fine_points, *features.viewpoint, features.voxel_size));
+}
+
+std::optional<FreeSpaceViolation> ScannedSpace::violation_by(const ScannedSpace& moved,
+                                                             const Transformation& this_from_moved,
+                                                             std::size_t most_looks) const {
+  if (!seen_) return {};
   FreeSpaceViolation violation;
-  const float reach = static_cast<float>(on_surface * fixed.features.voxel_size);
-  const Points& points = moved.features.points;
-  const std::size_t stride = std::max<std::size_t>(1, points.size() / max_looks);
+  const Points& points = moved.features_.points;
+  const std::size_t stride = std::max<std::size_t>(1, points.size() / most_looks);
   for (std::size_t i = 0; i < points.size(); i += stride) {
-    const Eigen::Vector3d point = fixed_from_moved * points[i];
-    const RangeImage::Sight sight = fixed.range_image->look_at(point);
+    const Eigen::Vector3d point = this_from_moved * points[i];
+    const auto [sight, growth] = seen_->image.look_at(point);
     if (sight == RangeImage::Sight::out_of_view) continue;
     ++violation.in_view;
     if (sight == RangeImage::Sight::possible) continue;
-    if (fixed.grid.nearest(point.cast<float>(), reach) < 0) ++violation.contradicting;
+    const double reach = on_surface * growth * features_.voxel_size;
+    if (seen_->surface.nearest(point.cast<float>(), static_cast<float>(reach)) < 0) ++violation.contradicting;
   }
   return violation;
 }
 
-FreeSpace free_space(const PreparedCloud& source, const PreparedCloud& target,
-                     const Transformation& target_from_source) {
-  return {free_space_violation(source, target, target_from_source),
-          free_space_violation(target, source, target_from_source.inverse())};
+FreeSpace free_space(const ScannedSpace& source, const ScannedSpace& target, const Transformation& target_from_source,
+                     std::size_t most_looks) {
+  return {target.violation_by(source, target_from_source, most_looks),
+          source.violation_by(target, target_from_source.inverse(), most_looks)};
 }
 
-double free_space_evidence(const FreeSpace& free_space, const PreparedCloud& source, const PreparedCloud& target) {
+double free_space_evidence(const FreeSpace& free_space, const Features& source, const Features& target) {
   const double confirmed = confirmed_by(free_space.source) + confirmed_by(free_space.target);
   const double contradicted = decades_per_share * std::max(0.0, free_space.violation() - tolerated);
   return decades_for * confirmed * resolution(source, target) - std::min(contradicted, most_decades_against);

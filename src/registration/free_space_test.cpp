@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/core_testing.hpp"
+#include "registration/pose_assessment.hpp"
 
 namespace igsp {
 namespace {
@@ -59,7 +60,7 @@ Boxes two_rooms() {
 const Vector3d left_eye(-2, 3.8, 1.5), right_eye(2.2, 3.6, 1.5);
 
 struct Cloud {
-  Cloud(const Scan& scan) : features(extract_features(scan, options())), prepared(features) {}
+  Cloud(const Scan& scan) : features(extract_features(scan, options())), space(features) {}
   static Options options() {
     Options options;
     options.threads = 1;
@@ -67,7 +68,7 @@ struct Cloud {
     return options;
   }
   Features features;
-  PreparedCloud prepared;
+  ScannedSpace space;
 };
 
 /// Of two scans given in one frame, when the first is moved by `motion`.
@@ -76,7 +77,7 @@ FreeSpace violations(const Scan& source, const Scan& target,
   const Cloud a(source), b(target);
   Transformation local = motion;  // between the centred clouds
   local.translation() = motion * a.features.origin - b.features.origin;
-  return free_space(a.prepared, b.prepared, local);
+  return free_space(a.space, b.space, local);
 }
 
 Transformation shift(double x, double y, double z) {
@@ -151,10 +152,12 @@ TEST(FreeSpace, FewInViewSayLittle) {
 TEST(FreeSpace, EvidenceIsForWhatIsEmptyAndAgainstWhatIsNot) {
   const Points scan = two_rooms().seen_from(left_eye, Random(1));
   const Cloud room({scan, left_eye});
-  const PreparedCloud& cloud = room.prepared;
-  EXPECT_EQ(free_space_evidence({}, cloud, cloud), 0);  // to the bit: without viewpoints two questions decide
+  EXPECT_EQ(free_space_evidence({}, room.features, room.features),
+            0);  // to the bit: without viewpoints two questions decide
   const FreeSpaceViolation none{1000, 0}, some{1000, 20}, people{1000, 36}, wall{1000, 300};
-  const auto evidence = [&](auto... directions) { return free_space_evidence(FreeSpace{directions...}, cloud, cloud); };
+  const auto evidence = [&](auto... directions) {
+    return free_space_evidence(FreeSpace{directions...}, room.features, room.features);
+  };
   EXPECT_GT(evidence(none, none), evidence(none, std::nullopt));
   EXPECT_GT(evidence(none, std::nullopt), evidence(some, std::nullopt));
   EXPECT_NEAR(evidence(people, people), 0, 0.03);
@@ -165,13 +168,57 @@ TEST(FreeSpace, EvidenceIsForWhatIsEmptyAndAgainstWhatIsNot) {
 TEST(FreeSpace, BeyondTheRimOfWhatWasSeenNothingIsKnown) {
   const Points wall = Boxes{{box(2, -1, -1, 2.1, 1, 1)}}.seen_from(Vector3d::Zero(), Random(1));
   const RangeImage image(wall, Vector3d::Zero(), voxel_size);
-  EXPECT_EQ(image.look_at({1, 0, 0}), RangeImage::Sight::empty);
-  EXPECT_EQ(image.look_at({1, 0.3, -0.3}), RangeImage::Sight::empty);
-  EXPECT_EQ(image.look_at({1.9, 0, 0}), RangeImage::Sight::possible);  // thinner than the tolerance
-  EXPECT_EQ(image.look_at({3, 0, 0}), RangeImage::Sight::possible);    // hidden
-  EXPECT_EQ(image.look_at({1, 0.53, 0}), RangeImage::Sight::out_of_view);
-  EXPECT_EQ(image.look_at({-1, 0, 0}), RangeImage::Sight::out_of_view);
-  EXPECT_EQ(image.look_at({0, 0, 0}), RangeImage::Sight::out_of_view);
+  EXPECT_EQ(image.look_at({1, 0, 0}).sight, RangeImage::Sight::empty);
+  EXPECT_EQ(image.look_at({1, 0.3, -0.3}).sight, RangeImage::Sight::empty);
+  EXPECT_EQ(image.look_at({1.9, 0, 0}).sight, RangeImage::Sight::possible);  // thinner than the tolerance
+  EXPECT_EQ(image.look_at({3, 0, 0}).sight, RangeImage::Sight::possible);    // hidden
+  EXPECT_EQ(image.look_at({1, 0.53, 0}).sight, RangeImage::Sight::out_of_view);
+  EXPECT_EQ(image.look_at({-1, 0, 0}).sight, RangeImage::Sight::out_of_view);
+  EXPECT_EQ(image.look_at({0, 0, 0}).sight, RangeImage::Sight::out_of_view);
+}
+
+TEST(FreeSpace, IsAskedAtTheFinestVoxelsOnEveryRung) {
+  const Points left = two_rooms().seen_from(left_eye, Random(1)), right = two_rooms().seen_from(right_eye, Random(2));
+  const Cloud a({left, left_eye}), b({right, right_eye});
+  const Options options = Cloud::options();
+  const ProgressCallback silent;
+  StageClock clock(silent);
+  ScaleLadder scales(
+      a.features, b.features, [](StageClock&) {}, options, clock);
+  ASSERT_GT(scales.rungs(), 1u);
+  Transformation local = shift(6, 0, 0);
+  local.translation() += a.features.origin - b.features.origin;
+  const FreeSpace at_v = free_space(a.space, b.space, local);
+  for (std::size_t rung = 0; rung < scales.rungs(); ++rung) {
+    const FreeSpace asked = assess_pose(scales, rung, local, 1).free_space;
+    EXPECT_EQ(asked.source->contradicting, at_v.source->contradicting);
+    EXPECT_EQ(asked.target->in_view, at_v.target->in_view);
+  }
+}
+
+// Lines of a scanner that lie farther apart than the aperture is wide.
+TEST(RangeImage, BetweenTwoScanLinesTheApertureGrows) {
+  Points wall;
+  for (double z = -1.2; z < 1.3; z += 0.3)
+    for (double y = -1; y < 1; y += 0.01) wall.push_back({2, y, z});
+  const RangeImage image(wall, Vector3d::Zero(), voxel_size);
+  const RangeImage::Look between = image.look_at({1, 0, 0.075});
+  EXPECT_EQ(between.sight, RangeImage::Sight::empty);
+  EXPECT_GT(between.growth, 1);
+  EXPECT_EQ(image.look_at({1.5, 0, 0.11}).sight, RangeImage::Sight::possible);  // with it grows what is tolerated
+}
+
+TEST(RangeImage, GroundBetweenTwoScanLinesIsNotEmpty) {
+  Points ground;
+  constexpr double height = 1.5, degree = std::numbers::pi / 180;
+  for (double below = 2.62; below < 30; below += 2)
+    for (double yaw = 0; yaw < 360; yaw += 0.1) {
+      const double r = height / std::tan(below * degree);
+      ground.push_back({r * std::cos(yaw * degree), r * std::sin(yaw * degree), -height});
+    }
+  const RangeImage image(ground, Vector3d::Zero(), voxel_size);
+  for (double below = 5; below < 25; below += 0.1)
+    EXPECT_NE(image.look_at({height / std::tan(below * degree), 0, -height}).sight, RangeImage::Sight::empty) << below;
 }
 
 TEST(RangeImage, IsTheSameWhereverItIsTurned) {
@@ -183,8 +230,8 @@ TEST(RangeImage, IsTheSameWhereverItIsTurned) {
   int different = 0, empty = 0;
   for (int i = 0; i < 20000; ++i) {
     const Vector3d point = random.in_cube(6);
-    different += image.look_at(point) != turned.look_at(g * point);
-    empty += image.look_at(point) == RangeImage::Sight::empty;
+    different += image.look_at(point).sight != turned.look_at(g * point).sight;
+    empty += image.look_at(point).sight == RangeImage::Sight::empty;
   }
   EXPECT_LE(different, 4);  // rounding
   EXPECT_GT(empty, 500);
@@ -200,20 +247,20 @@ TEST(RangeImage, AFarViewpointMeansParallelLinesOfSight) {
   for (int i = 0; i < 5000; ++i) {
     const double x = random.uniform(-2.8, 2.8), y = random.uniform(-2.8, 2.8);
     const Vector3d above(x, y, surface.height_at(x, y) + 1.5), below(x, y, surface.height_at(x, y) - 1.5);
-    different += far.look_at(above) != RangeImage::Sight::empty;
-    EXPECT_EQ(far.look_at(below), RangeImage::Sight::possible);
-    different += far.look_at(above) != farther.look_at(above);
-    different += farther.look_at(above) != farthest.look_at(above);
+    different += far.look_at(above).sight != RangeImage::Sight::empty;
+    EXPECT_EQ(far.look_at(below).sight, RangeImage::Sight::possible);
+    different += far.look_at(above).sight != farther.look_at(above).sight;
+    different += farther.look_at(above).sight != farthest.look_at(above).sight;
   }
   EXPECT_LT(different, 100);  // steep slopes within the aperture
 }
 
 TEST(RangeImage, DegenerateCloudsSeeNothing) {
   const Points none, one{Vector3d(1, 0, 0)}, line{Vector3d(1, 0, 0), Vector3d(2, 0, 0), Vector3d(3, 0, 0)};
-  EXPECT_EQ(RangeImage(none, Vector3d::Zero(), 1).look_at({0.5, 0, 0}), RangeImage::Sight::out_of_view);
-  EXPECT_EQ(RangeImage(one, Vector3d::Zero(), 1).look_at({0.5, 0, 0}), RangeImage::Sight::out_of_view);
-  EXPECT_EQ(RangeImage(one, one[0], 1).look_at({0.5, 0, 0}), RangeImage::Sight::out_of_view);
-  EXPECT_EQ(RangeImage(line, Vector3d::Zero(), 0.1).look_at({0.1, 0, 0}), RangeImage::Sight::empty);
+  EXPECT_EQ(RangeImage(none, Vector3d::Zero(), 1).look_at({0.5, 0, 0}).sight, RangeImage::Sight::out_of_view);
+  EXPECT_EQ(RangeImage(one, Vector3d::Zero(), 1).look_at({0.5, 0, 0}).sight, RangeImage::Sight::out_of_view);
+  EXPECT_EQ(RangeImage(one, one[0], 1).look_at({0.5, 0, 0}).sight, RangeImage::Sight::out_of_view);
+  EXPECT_EQ(RangeImage(line, Vector3d::Zero(), 0.1).look_at({0.1, 0, 0}).sight, RangeImage::Sight::empty);
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ constexpr std::array<std::size_t, 4> first_fine_radius{4, 4, 2, 0};  // by rung
 // Found at 8 v or 4 v, a pose is refined there first: from further off than a voxel of 4 v the fine surfaces of scan
 // lines do not find each other.
 constexpr std::size_t finest_settled = 2;  // rung
+constexpr std::size_t screening_looks = 300;
 constexpr std::size_t coarse_points = 1500;
 constexpr std::size_t early_fine_points = 2000;
 constexpr std::size_t fine_points = 8000;
@@ -75,7 +76,7 @@ std::vector<Rematch> distinct(std::vector<Rematch> sorted, std::span<const Rival
                               int limit) {
   std::vector<Rematch> kept;
   for (Rematch& match : sorted) {
-    if (match.agreeing < fewest_agreeing && !(ranked.empty() && kept.empty())) break;
+    if (match.agreeing < fewest_agreeing && !(ranked.empty() && kept.empty())) continue;
     if (!repeats_one_of(ranked, match.target_from_source, voxel_size) &&
         !repeats_one_of(std::span<const Rematch>(kept), match.target_from_source, voxel_size)) {
       kept.push_back(std::move(match));
@@ -130,7 +131,9 @@ void finish(ScaleLadder& scales, const Options& options, StageClock& clock, Sear
 
 // A few iterations of the loop and a short refinement for each, then the question that the verdict asks as well: how
 // well do the clouds agree at this pose? Best first.
-std::vector<Rival> rank(CommonFrame& frame, std::span<const Transformation> candidates, const Options& options) {
+std::vector<Rival> rank(ScaleLadder& scales, std::size_t rung, std::span<const Transformation> candidates,
+                        const Options& options) {
+  CommonFrame& frame = scales.frame(rung);
   const Surface source = surface_of(frame.source()), target = surface_of(frame.target());
   const double v = frame.target().features.voxel_size;
   const Options alone = in_one_thread(options);
@@ -140,7 +143,7 @@ std::vector<Rival> rank(CommonFrame& frame, std::span<const Transformation> cand
         return settle(source, target, loop.target_from_source, v, alone);
       });
   std::vector<Rival> ranked = look_into_each<Rival>(frame, poses, [&](const Transformation& pose) {
-    return Rival{pose, assess_pose(frame, pose, 1)};
+    return Rival{pose, assess_pose(scales, rung, pose, 1)};
   });
   sort_by_quality(ranked);
   return ranked;
@@ -157,21 +160,29 @@ bool is_settled(std::span<const Rival> ranked, double voxel_size) {
   });
 }
 
+FreeSpaceQuestion question_of_free_space(const ScaleLadder& scales) {
+  if (!scales.knows_a_viewpoint()) return {};
+  return [&](const Transformation& pose) {
+    return free_space_evidence(scales.free_space_at(pose, screening_looks), scales.source(), scales.target());
+  };
+}
+
 // Proposes, screens and ranks; together with the best that another scale found.
-std::vector<Rival> search_at(CommonFrame& scale, std::span<const Rival> found, const Options& options,
-                             StageClock& clock) {
+std::vector<Rival> search_at(ScaleLadder& scales, std::size_t rung, std::span<const Rival> found,
+                             const Options& options, StageClock& clock) {
+  CommonFrame& frame = scales.frame(rung);
   found = found.first(std::min(found.size(), carried));
   clock.start("hypotheses");
-  const std::vector<Hypothesis> hypotheses = propose(scale, options);
+  const std::vector<Hypothesis> hypotheses = propose(frame, options);
   clock.start("screening");
-  const std::vector<Rematch> screened =
-      distinct(screen(scale, hypotheses, options, [&](double share) { clock.report(share); }), found,
-               scale.target().features.voxel_size, options.hypotheses.max_refined);
+  const std::vector<Rematch> screened = distinct(
+      screen(frame, hypotheses, options, question_of_free_space(scales), [&](double share) { clock.report(share); }),
+      found, scales.voxel_size(rung), options.hypotheses.max_refined);
   clock.start("ranking");
   std::vector<Transformation> candidates;
   for (const Rival& pose : found) candidates.push_back(pose.target_from_source);
   for (const Rematch& pose : screened) candidates.push_back(pose.target_from_source);
-  return rank(scale, candidates, options);
+  return rank(scales, rung, candidates, options);
 }
 
 // What the finer rungs say against the best pose of this one: they see what it cannot, not the other way round.
@@ -234,9 +245,11 @@ SearchOutcome hypotheses_search(ScaleLadder& scales, const Options& options, Sta
   double quality = std::numeric_limits<double>::lowest();
   for (std::size_t rung = scales.rungs(); rung-- > 0;) {
     CommonFrame& frame = scales.frame(rung);
-    outcome.ranked[rung] = search_at(frame, found, options, clock);
+    outcome.ranked[rung] = search_at(scales, rung, found, options, clock);
     found = outcome.ranked[rung];
-    if (!found.empty()) quality = std::max(quality, found.front().assessment.quality);
+    // What contradicts the poses that were found says nothing of those that were not.
+    for (const Rival& pose : found)
+      quality = std::max(quality, pose.assessment.quality - pose.assessment.free_space_evidence);
     outcome.finest_rung = rung;
     const bool is_hopeless = can_tell(rung, frame) && quality < hopeless_quality;
     if (is_hopeless || (options.refinement.enabled && is_settled(found, scales.voxel_size(rung)))) break;

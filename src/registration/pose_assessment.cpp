@@ -47,7 +47,9 @@ double PoseAssessment::chance_odds() const {
   return std::pow(10.0, demanded - quality);
 }
 
-PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from_source, int threads) {
+PoseAssessment assess_pose(ScaleLadder& scales, std::size_t rung, const Transformation& target_from_source,
+                           int threads) {
+  CommonFrame& frame = scales.frame(rung);
   PoseAssessment assessment;
   parallel_pair(
       threads,
@@ -59,9 +61,10 @@ PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from
   assessment.mutual_matches = matches.size();
   assessment.agreeing_matches =
       count_inliers(matches, target_from_source, agreeing_distance * frame.target().features.voxel_size);
-  assessment.free_space = free_space(frame.source(), frame.target(), target_from_source);
-  assessment.quality =
-      quality_of(assessment) + free_space_evidence(assessment.free_space, frame.source(), frame.target());
+  assessment.free_space = scales.free_space_at(target_from_source);
+  assessment.free_space_evidence =
+      free_space_evidence(assessment.free_space, frame.source().features, frame.target().features);
+  assessment.quality = quality_of(assessment) + assessment.free_space_evidence;
   return assessment;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "igsp/result.hpp"
-#include "registration/common_frame.hpp"
+#include "registration/scale_ladder.hpp"
 #include "registration/surface_contact.hpp"
 
 namespace igsp {
@@ -13,6 +13,7 @@ struct PoseAssessment {
   std::size_t mutual_matches = 0;    ///< do the features agree? Mutual nearest neighbours in the common frame ...
   std::size_t agreeing_matches = 0;  ///< ... and those of them within 2.5 voxels
   FreeSpace free_space;              ///< is empty what the other scanner saw through?
+  double free_space_evidence = 0;    ///< of that, F of docs/verdict.md
   double quality = 0;                ///< Q, docs/method.md
   /// Share of the mutual matches that agree, in terms of what right poses of such an overlap have at least.
   double share_of_expected() const;
@@ -20,6 +21,8 @@ struct PoseAssessment {
   /// Odds that the pose is chance, against that it is right.
   double chance_odds() const;
 };
-PoseAssessment assess_pose(CommonFrame& frame, const Transformation& target_from_source, int threads);
+/// On a rung of the ladder that is ready.
+PoseAssessment assess_pose(ScaleLadder& scales, std::size_t rung, const Transformation& target_from_source,
+                           int threads);
 
 }  // namespace igsp

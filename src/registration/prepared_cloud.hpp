@@ -1,10 +1,7 @@
 #pragma once
 
-#include <optional>
-
 #include "igsp/features.hpp"
 #include "registration/point_to_plane.hpp"
-#include "registration/range_image.hpp"
 #include "spatial/point_grid.hpp"
 
 namespace igsp {
@@ -16,13 +13,11 @@ struct PreparedCloud {
       : features(cloud_features), grid(cloud_features.points, 3.0 * cloud_features.voxel_size) {
     keypoints.reserve(features.keypoints.size());
     for (const std::uint32_t i : features.keypoints) keypoints.push_back(features.points[i]);
-    if (features.viewpoint) range_image.emplace(features.fine_points, *features.viewpoint, features.voxel_size);
   }
 
   const Features& features;
-  PointGrid grid;                         ///< of the voxel centroids
-  Points keypoints;                       ///< positions
-  std::optional<RangeImage> range_image;  ///< where the viewpoint is known
+  PointGrid grid;    ///< of the voxel centroids
+  Points keypoints;  ///< positions
 };
 
 /// Its voxels, with the normals of its features.

@@ -11,11 +11,41 @@ namespace {
 // in the aperture that is near by, and less is found empty.
 constexpr double aperture = 1.5;    // voxels, at the median range
 constexpr double in_front = 4.0;    // voxels: beyond noise, and beyond what two scans see of one grazing surface
+constexpr double most_growth = 8;   // of the aperture, where a scanner's lines lie far apart
+constexpr double line = 0.05;       // one variance of the other
 constexpr int min_seen = 3;         // points in the aperture
 constexpr double max_offset = 0.5;  // of their mean from the direction, in apertures: a half disc has 0.42, a rim more
 
 // Farther away it would cost digits and change nothing: lines of sight are parallel to a millionth.
 constexpr double farthest = 1e6;  // of the cloud's size
+
+// What was seen within an aperture about a direction.
+struct Window {
+  int seen = 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero(), products = Eigen::Vector3d::Zero();
+
+  void add(const Eigen::Vector3d& offset, double range) {
+    ++seen;
+    nearest = std::min(nearest, range);
+    sum += offset;
+    squares += offset.cwiseAbs2();
+    products += Eigen::Vector3d(offset.y() * offset.z(), offset.z() * offset.x(), offset.x() * offset.y());
+  }
+
+  double offset() const { return sum.norm() / seen; }
+
+  // Of the two variances across the line of sight, from their sum and their product: the third one is next to nothing.
+  bool is_a_line() const {
+    const Eigen::Vector3d mean = sum / seen, variance = squares / seen - mean.cwiseAbs2();
+    const Eigen::Vector3d covariance =
+        products / seen - Eigen::Vector3d(mean.y() * mean.z(), mean.z() * mean.x(), mean.x() * mean.y());
+    const double product = variance.y() * variance.z() + variance.z() * variance.x() + variance.x() * variance.y() -
+                           covariance.squaredNorm();
+    const double total = variance.sum();
+    return product < line / ((1 + line) * (1 + line)) * total * total;
+  }
+};
 
 double largest_distance(PointView points, const Eigen::Vector3d& from) {
   double squared = 0;
@@ -61,22 +91,22 @@ Points RangeImage::project(PointView points) const {
   return projected;
 }
 
-RangeImage::Sight RangeImage::look_at(const Eigen::Vector3d& point) const {
+RangeImage::Look RangeImage::look_at(const Eigen::Vector3d& point) const {
   const Eigen::Vector3d ray = point - viewpoint_;
   const double range = ray.norm();
-  if (!(range > 0)) return Sight::out_of_view;
+  if (!(range > 0)) return {Sight::out_of_view, 1};
   const Eigen::Vector3f direction = on_sphere(ray, range).cast<float>();
-  double nearest = std::numeric_limits<double>::infinity();
-  Eigen::Vector3f offset = Eigen::Vector3f::Zero();
-  int seen = 0;
-  projected_.visit_sphere(direction, static_cast<float>(aperture_), [&](std::uint32_t i, float) {
-    nearest = std::min(nearest, ranges_[i]);
-    offset += Eigen::Vector3f(projected_.x[i], projected_.y[i], projected_.z[i]) - direction;
-    ++seen;
-  });
-  // In which order Eigen sums up three floats depends on the processor, that of doubles does not.
-  if (seen < min_seen || offset.cast<double>().norm() > max_offset * aperture_ * seen) return Sight::out_of_view;
-  return range < nearest - tolerance_ ? Sight::empty : Sight::possible;
+  for (double growth = 1; growth <= most_growth; growth *= 2) {
+    Window window;
+    projected_.visit_sphere(direction, static_cast<float>(growth * aperture_), [&](std::uint32_t i, float) {
+      const Eigen::Vector3f offset = Eigen::Vector3f(projected_.x[i], projected_.y[i], projected_.z[i]) - direction;
+      window.add(offset.cast<double>(), ranges_[i]);
+    });
+    if (window.seen < min_seen || window.is_a_line()) continue;
+    if (window.offset() > max_offset * growth * aperture_) break;
+    return {range < window.nearest - growth * tolerance_ ? Sight::empty : Sight::possible, growth};
+  }
+  return {Sight::out_of_view, 1};
 }
 
 }  // namespace igsp

@@ -9,8 +9,8 @@ namespace igsp {
 
 /// What one scan saw from where its scanner stood: its points projected onto the sphere about the viewpoint at their
 /// median range, with the range of each. There are no cells whose axes could matter: a direction is answered by the
-/// points within a small aperture about it. A viewpoint far away makes the sphere a plane and the lines of sight
-/// parallel, without a case of its own.
+/// points within a small aperture about it, a larger one where they lie on a single scan line. A viewpoint far away
+/// makes the sphere a plane and the lines of sight parallel, without a case of its own.
 class RangeImage {
  public:
   /// `points` (about `voxel_size` apart or less) and `viewpoint` in one frame, centred on the cloud.
@@ -22,7 +22,11 @@ class RangeImage {
     possible,     ///< as far away as what was seen, or hidden behind it
     empty         ///< in front of everything that was seen about this direction
   };
-  Sight look_at(const Eigen::Vector3d& point) const;
+  struct Look {
+    Sight sight;
+    double growth;  ///< of the aperture, which this took: 1, 2, 4 or 8
+  };
+  Look look_at(const Eigen::Vector3d& point) const;
 
  private:
   Points project(PointView points) const;

@@ -9,10 +9,13 @@
 
 namespace igsp {
 
-/// Matches proposals again in their common frame, those with most agreeing matches first. A clear winner spares the
-/// others, except those with half of its inliers, which would be the other poses of a symmetric scene. `tick`: the
-/// share that is done.
+/// What free space says of a pose: log10 odds that it is right. Empty where no viewpoint is known.
+using FreeSpaceQuestion = std::function<double(const Transformation&)>;
+
+/// Matches proposals again in their common frame, those with most agreeing matches first, in the light of free space
+/// where that is known. A clear winner spares the others, except those with half of its inliers, which would be the
+/// other poses of a symmetric scene. `tick`: the share that is done.
 std::vector<Rematch> screen(CommonFrame& frame, std::span<const Hypothesis> hypotheses, const Options& options,
-                            const std::function<void(double)>& tick);
+                            const FreeSpaceQuestion& ask_free_space, const std::function<void(double)>& tick);
 
 }  // namespace igsp

@@ -33,7 +33,7 @@ bool is_right(const Scene& scene, const Rematch& match) {
 TEST(Screening, FindsTheRightOneOfManyWithMoreInliers) {
   const Scene scene(3);
   CommonFrame frame = scene.frame();
-  const std::vector<Rematch> screened = screen(frame, proposals(scene, 20, 3, 10), Options(), silent);
+  const std::vector<Rematch> screened = screen(frame, proposals(scene, 20, 3, 10), Options(), {}, silent);
   EXPECT_TRUE(is_right(scene, screened.front()));
   EXPECT_EQ(screened.size(), proposed);
   EXPECT_TRUE(std::ranges::is_sorted(screened, std::greater(), &Rematch::agreeing));
@@ -42,8 +42,8 @@ TEST(Screening, FindsTheRightOneOfManyWithMoreInliers) {
 TEST(Screening, AClearWinnerSparesAllThatCannotBeItsRivals) {
   const Scene scene(4);
   CommonFrame frame = scene.frame(), other = scene.frame();
-  EXPECT_EQ(screen(frame, proposals(scene, 0, 20, 9), Options(), silent).size(), 1u);
-  EXPECT_EQ(screen(other, proposals(scene, 0, 20, 10), Options(), silent).size(), proposed);
+  EXPECT_EQ(screen(frame, proposals(scene, 0, 20, 9), Options(), {}, silent).size(), 1u);
+  EXPECT_EQ(screen(other, proposals(scene, 0, 20, 10), Options(), {}, silent).size(), proposed);
 }
 
 TEST(Screening, TheStrongestOfSeveralClearWinnersDecides) {
@@ -51,13 +51,29 @@ TEST(Screening, TheStrongestOfSeveralClearWinnersDecides) {
   CommonFrame frame = scene.frame();
   std::vector<Hypothesis> hypotheses = proposals(scene, 0, 20, 7);
   hypotheses[1] = {scene.truth, 12};
-  EXPECT_EQ(screen(frame, hypotheses, Options(), silent).size(), 2u);
+  EXPECT_EQ(screen(frame, hypotheses, Options(), {}, silent).size(), 2u);
+}
+
+TEST(Screening, WhatFreeSpaceContradictsIsNoClearWinnerAndComesLater) {
+  const Scene scene(4);
+  CommonFrame frame = scene.frame(), other = scene.frame();
+  const auto is_the_right_one = [&](const Transformation& pose) {
+    return (pose.linear() - scene.truth.linear()).norm() < 0.05;
+  };
+  const auto against = [&](const Transformation& pose) { return is_the_right_one(pose) ? -2.0 : 0.0; };
+  const auto against_others = [&](const Transformation& pose) { return is_the_right_one(pose) ? 0.0 : -2.0; };
+  const std::vector<Rematch> screened = screen(frame, proposals(scene, 0, 20, 9), Options(), against, silent);
+  EXPECT_EQ(screened.size(), proposed);
+  const auto place = std::ranges::find_if(screened, is_the_right_one, &Rematch::target_from_source);
+  ASSERT_NE(place, screened.end());
+  EXPECT_EQ(place->evidence, -2.0);
+  EXPECT_EQ(screen(other, proposals(scene, 0, 20, 9), Options(), against_others, silent).size(), 1u);
 }
 
 TEST(Screening, FewMatchesAreNoClearWinnerHoweverManyOfThemAgree) {
   const Scene scene(4, {.half_side = 0.6});
   CommonFrame frame = scene.frame();
-  const std::vector<Rematch> screened = screen(frame, proposals(scene, 0, 20, 9), Options(), silent);
+  const std::vector<Rematch> screened = screen(frame, proposals(scene, 0, 20, 9), Options(), {}, silent);
   EXPECT_EQ(screened.size(), proposed);
   const Rematch& best = screened.front();
   EXPECT_TRUE(best.agreeing > 5 && best.agreeing < 15 && best.agreeing >= 0.7 * best.matches.size())
@@ -67,7 +83,7 @@ TEST(Screening, FewMatchesAreNoClearWinnerHoweverManyOfThemAgree) {
 TEST(Screening, ManyMatchesAreNoClearWinnerWhereFewOfThemAgree) {
   const Scene scene(4, {.half_side = 4, .common = 2});
   CommonFrame frame = scene.frame();
-  const std::vector<Rematch> screened = screen(frame, proposals(scene, 0, 20, 9), Options(), silent);
+  const std::vector<Rematch> screened = screen(frame, proposals(scene, 0, 20, 9), Options(), {}, silent);
   EXPECT_EQ(screened.size(), proposed);
   const Rematch& best = screened.front();
   EXPECT_TRUE(is_right(scene, best));

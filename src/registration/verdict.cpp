@@ -52,8 +52,7 @@ std::vector<Rival> rivals_at(ScaleLadder& scales, std::size_t rung, const Search
   const double v = scales.voxel_size(rung);
   if (!outcome.ranked[rung].empty()) return distinct_rivals(outcome.ranked[rung], outcome.target_from_source, v);
   std::vector<Rival> rivals = distinct_rivals(outcome.ranked[outcome.rung], outcome.target_from_source, v);
-  for (Rival& rival : rivals)
-    rival.assessment = assess_pose(scales.frame(rung), rival.target_from_source, scales.threads());
+  for (Rival& rival : rivals) rival.assessment = assess_pose(scales, rung, rival.target_from_source, scales.threads());
   sort_by_quality(rivals);
   return rivals;
 }
@@ -69,7 +68,7 @@ void weigh(const SearchOutcome& outcome, Judgement& judgement) {
 Judgement judgement_at(ScaleLadder& scales, std::size_t rung, const SearchOutcome& outcome) {
   Judgement judgement;
   judgement.rung = rung;
-  judgement.pose = assess_pose(scales.frame(rung), outcome.target_from_source, scales.threads());
+  judgement.pose = assess_pose(scales, rung, outcome.target_from_source, scales.threads());
   judgement.free_directions = free_directions_at(scales, rung, outcome.target_from_source);
   judgement.rivals = rivals_at(scales, rung, outcome);
   weigh(outcome, judgement);
@@ -84,7 +83,7 @@ void refine_rivals(ScaleLadder& scales, const SearchOutcome& outcome, const Opti
     const double quality = rival.assessment.quality;
     if (quality < 0 || quality < judgement.pose.quality - near_quality) break;
     const Transformation pose = refined(scales, rung, rival.target_from_source, options);
-    const PoseAssessment assessment = assess_pose(scales.frame(rung), pose, scales.threads());
+    const PoseAssessment assessment = assess_pose(scales, rung, pose, scales.threads());
     if (assessment.quality > quality) rival = {pose, assessment}, is_changed = true;
   }
   if (!is_changed) return;

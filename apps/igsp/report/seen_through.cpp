@@ -15,7 +15,7 @@ std::vector<std::uint8_t> seen_through(PointView points, const RangeImage& scann
   std::vector<std::uint8_t> empty(points.size());
   parallel_blocks(empty.size(), threads, 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      empty[i] = scanner.look_at(scanner_from_points * points[i]) == RangeImage::Sight::empty;
+      empty[i] = scanner.look_at(scanner_from_points * points[i]).sight == RangeImage::Sight::empty;
     }
   });
   return empty;
