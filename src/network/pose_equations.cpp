@@ -92,6 +92,20 @@ double PoseEquations::share_of(const RelativeFactor& factor, const Solver& solve
   return std::clamp((factor.information * covariance).trace() / size_, 1e-6, 1.0);
 }
 
+// By scan, how many links hold it about as well as each other: a weak one beside a strong one does not count.
+std::vector<double> PoseEquations::links_by_scan(const Solver& solver) const {
+  std::vector<double> sums(unknown_.size(), 0), squares(unknown_.size(), 0);
+  for (const RelativeFactor& factor : shared_) {
+    const double share = share_of(factor, solver);
+    for (const std::size_t scan : {factor.source, factor.target}) {
+      sums[scan] += share;
+      squares[scan] += share * share;
+    }
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = squares[i] > 0 ? sums[i] / squares[i] : 1;
+  return sums;
+}
+
 std::optional<std::vector<Vector6>> PoseEquations::solve() const {
   std::vector<Vector6> steps(unknown_.size(), Vector6::Zero());
   if (unknowns_ == 0) return steps;
@@ -111,7 +125,10 @@ std::vector<Matrix6> PoseEquations::covariances() const {
   const Solver solver(matrix_of(information_));
   if (!is_positive(solver)) return blocks;
   Entries entries = scatter_;
-  for (const RelativeFactor& factor : shared_) add_between(factor, *factor.scatter / share_of(factor, solver), entries);
+  const std::vector<double> links = links_by_scan(solver);
+  for (const RelativeFactor& factor : shared_) {
+    add_between(factor, std::max(links[factor.source], links[factor.target]) * *factor.scatter, entries);
+  }
   const Eigen::SparseMatrix<double> scatter = matrix_of(entries);
   for (std::size_t i = 0; i < unknown_.size(); ++i) {
     if (unknown_[i] == stays) continue;

@@ -55,6 +55,7 @@ class PoseEquations {
   void add_block(std::size_t row, std::size_t column, const Matrix6& block, Entries& entries) const;
   void add_between(const RelativeFactor& factor, const Matrix6& block, Entries& entries) const;
   double share_of(const RelativeFactor& factor, const Solver& solver) const;
+  std::vector<double> links_by_scan(const Solver& solver) const;
   Eigen::SparseMatrix<double> matrix_of(const Entries& entries) const;
 
   std::span<const Eigen::Vector3d> centres_;
