@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t slice = 8;  // pairs at once, between two reports
 
-// Of the direction that is seen less of. Nothing on voxels above 2 v: like rooms contradict nothing there, so it must
-// not make a link that stands alone, or one that was refused, look clear.
+// Of the direction that is seen less of. Nothing where voxels above 2 v answered: what they match is too little for a
+// link to stand alone by, or for one that was refused to look clear.
 std::size_t in_view(const Result& result) {
   if (result.evidence.voxel_size > 2 * result.voxel_size) return 0;
   const FreeSpace& space = result.evidence.free_space;

@@ -125,7 +125,7 @@ void fit_from(const Transformation& start, double voxel_size, int degrees_of_fre
 
 Rematch not_moved(const Transformation& hypothesis, std::vector<PointPair> matches, double voxel_size) {
   const std::size_t agreeing = count_inliers(matches, hypothesis, agreeing_distance * voxel_size);
-  return {hypothesis, std::move(matches), agreeing, 0};
+  return {hypothesis, std::move(matches), agreeing, {}};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "estimation/rigid_fit.hpp"
 #include "features/support.hpp"
+#include "igsp/result.hpp"
 #include "registration/prepared_cloud.hpp"
 
 namespace igsp {
@@ -51,7 +52,7 @@ struct Rematch {
   Transformation target_from_source;
   std::vector<PointPair> matches;  ///< mutual nearest neighbours
   std::size_t agreeing = 0;        ///< of them, within 2.5 voxels
-  double evidence = 0;             ///< of free space, log10 odds that the pose is right; 0: not asked
+  FreeSpace free_space;            ///< at the pose, where it was asked
 };
 
 /// Matches again, votes for the translation (mode of b - R a) and fits robustly; keeps the better of both poses.

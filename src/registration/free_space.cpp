@@ -14,25 +14,23 @@ constexpr double on_surface = 3.0;  // voxels
 // hardly one by more.
 constexpr double tolerated = 0.035;
 constexpr double decades_per_share = 20, most_decades_against = 2;  // beyond what is tolerated
-constexpr double decades_for = 0.5;                                 // a direction, where nothing is contradicted
-constexpr double convincing_view = 100;                             // points in view for half of that
-// A wrong pose is not contradicted either where the voxels are as large as what is in the scene: none for the first
-// number of voxels, all for the second.
-constexpr double coarse_voxels = 1000, fine_voxels = 10000;
+
+// For a pose that nothing contradicts: by the decades of the proposals that are contradicted no more, less what right
+// poses have of that. Scenes where proposals are not contradicted are like themselves elsewhere.
+constexpr double decades_for = 1.3, asked_for = 0.4;
+constexpr double most_rarity = 2;  // decades
+constexpr double alike = 0.003;    // violations, of a few hundred looks
+// On larger voxels matches and contact tell less of what free space is to confirm: nothing for the first number of
+// them, all for the second.
+constexpr double coarse_voxels = 300, fine_voxels = 3000;
+constexpr double convincing_view = 100;  // points in view for half of that
 
 // Points in view that agree, added to those that are there: few prove little.
 constexpr double assumed_agreeing = 20;
 
-double confirmed_by(const std::optional<FreeSpaceViolation>& violation) {
-  if (!violation) return 0;
-  const double in_view = static_cast<double>(violation->in_view);
-  return std::max(0.0, 1 - violation->share() / tolerated) * in_view / (in_view + convincing_view);
-}
-
-double resolution(const Features& source, const Features& target) {
-  const double voxels =
-      std::sqrt(static_cast<double>(source.points.size()) * static_cast<double>(target.points.size()));
-  return std::clamp(std::log(voxels / coarse_voxels) / std::log(fine_voxels / coarse_voxels), 0.0, 1.0);
+double conviction_of(const FreeSpaceViolation& violation) {
+  const double in_view = static_cast<double>(violation.in_view);
+  return in_view / (in_view + convincing_view);
 }
 
 }  // namespace
@@ -70,16 +68,24 @@ std::optional<FreeSpaceViolation> ScannedSpace::violation_by(const ScannedSpace&
   return violation;
 }
 
-FreeSpace free_space(const ScannedSpace& source, const ScannedSpace& target, const Transformation& target_from_source,
-                     std::size_t most_looks) {
-  return {target.violation_by(source, target_from_source, most_looks),
-          source.violation_by(target, target_from_source.inverse(), most_looks)};
+double free_space_evidence(const FreeSpace& free_space, double rarity, double voxels) {
+  const double violation = free_space.violation();
+  const double resolution =
+      std::clamp(std::log(voxels / coarse_voxels) / std::log(fine_voxels / coarse_voxels), 0.0, 1.0);
+  const double uncontradicted = std::max(0.0, 1 - violation / tolerated);
+  const double gained = decades_for * std::min(rarity, most_rarity) * resolution * uncontradicted;
+  double evidence = 0;
+  for (const auto& direction : {free_space.source, free_space.target}) {
+    if (direction) evidence += 0.5 * (gained * conviction_of(*direction) - asked_for);
+  }
+  return evidence - std::min(decades_per_share * std::max(0.0, violation - tolerated), most_decades_against);
 }
 
-double free_space_evidence(const FreeSpace& free_space, const Features& source, const Features& target) {
-  const double confirmed = confirmed_by(free_space.source) + confirmed_by(free_space.target);
-  const double contradicted = decades_per_share * std::max(0.0, free_space.violation() - tolerated);
-  return decades_for * confirmed * resolution(source, target) - std::min(contradicted, most_decades_against);
+double PairSpace::evidence(const FreeSpace& free_space, double voxels) const {
+  const double limit = free_space.violation() + alike;
+  const auto as_little = static_cast<double>(std::ranges::count_if(proposed_, [&](double v) { return v <= limit; }));
+  return free_space_evidence(free_space, std::log10((static_cast<double>(proposed_.size()) + 2) / (as_little + 1)),
+                             voxels);
 }
 
 }  // namespace igsp

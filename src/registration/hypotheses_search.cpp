@@ -160,11 +160,9 @@ bool is_settled(std::span<const Rival> ranked, double voxel_size) {
   });
 }
 
-FreeSpaceQuestion question_of_free_space(const ScaleLadder& scales) {
-  if (!scales.knows_a_viewpoint()) return {};
-  return [&](const Transformation& pose) {
-    return free_space_evidence(scales.free_space_at(pose, screening_looks), scales.source(), scales.target());
-  };
+FreeSpaceQuestion question_of_free_space(ScaleLadder& scales) {
+  if (!scales.space().is_known()) return {};
+  return [&](const Transformation& pose) { return scales.space().at(pose, screening_looks); };
 }
 
 // Proposes, screens and ranks; together with the best that another scale found.
@@ -175,9 +173,11 @@ std::vector<Rival> search_at(ScaleLadder& scales, std::size_t rung, std::span<co
   clock.start("hypotheses");
   const std::vector<Hypothesis> hypotheses = propose(frame, options);
   clock.start("screening");
-  const std::vector<Rematch> screened = distinct(
-      screen(frame, hypotheses, options, question_of_free_space(scales), [&](double share) { clock.report(share); }),
-      found, scales.voxel_size(rung), options.hypotheses.max_refined);
+  std::vector<Rematch> screened =
+      screen(frame, hypotheses, options, question_of_free_space(scales), [&](double share) { clock.report(share); });
+  if (scales.space().is_known())
+    for (const Rematch& pose : screened) scales.space().note_proposal(pose.free_space);
+  screened = distinct(std::move(screened), found, scales.voxel_size(rung), options.hypotheses.max_refined);
   clock.start("ranking");
   std::vector<Transformation> candidates;
   for (const Rival& pose : found) candidates.push_back(pose.target_from_source);

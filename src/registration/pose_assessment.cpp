@@ -61,9 +61,10 @@ PoseAssessment assess_pose(ScaleLadder& scales, std::size_t rung, const Transfor
   assessment.mutual_matches = matches.size();
   assessment.agreeing_matches =
       count_inliers(matches, target_from_source, agreeing_distance * frame.target().features.voxel_size);
-  assessment.free_space = scales.free_space_at(target_from_source);
-  assessment.free_space_evidence =
-      free_space_evidence(assessment.free_space, frame.source().features, frame.target().features);
+  assessment.free_space = scales.space().at(target_from_source);
+  const double voxels = std::sqrt(static_cast<double>(frame.source().features.points.size()) *
+                                  static_cast<double>(frame.target().features.points.size()));
+  assessment.free_space_evidence = scales.space().evidence(assessment.free_space, voxels);
   assessment.quality = quality_of(assessment) + assessment.free_space_evidence;
   return assessment;
 }

@@ -23,7 +23,7 @@ ScaleLadder::Clouds::Clouds(const Features& source_features, const Features& tar
 
 ScaleLadder::ScaleLadder(const Features& source, const Features& target, CompleteBoth complete, const Options& options,
                          StageClock& clock)
-    : complete_(std::move(complete)), options_(options), clock_(clock), source_space_(source), target_space_(target) {
+    : complete_(std::move(complete)), options_(options), clock_(clock), space_(source, target) {
   rungs_.push_back({source, target, {}});
   while (rungs_.size() < most_rungs) {
     const Rung& below = rungs_.back();

@@ -33,10 +33,7 @@ class ScaleLadder {
 
   /// What the scanners saw through, asked at rung 0 of every pose: larger voxels forgive a wrong pose whatever is but a
   /// few of them large.
-  FreeSpace free_space_at(const Transformation& target_from_source, std::size_t most_looks = 1000) const {
-    return free_space(source_space_, target_space_, target_from_source, most_looks);
-  }
-  bool knows_a_viewpoint() const { return source().viewpoint || target().viewpoint; }
+  PairSpace& space() { return space_; }
 
   const Features& source() const { return rungs_[0].source; }  ///< of rung 0; complete only after frame(0)
   const Features& target() const { return rungs_[0].target; }
@@ -64,7 +61,7 @@ class ScaleLadder {
   std::deque<Coarser> coarser_;  // from rung 1 on
   std::deque<Rung> rungs_;
   std::optional<FineSurfaces> fine_surfaces_;
-  ScannedSpace source_space_, target_space_;
+  PairSpace space_;
 };
 
 }  // namespace igsp

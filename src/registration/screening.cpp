@@ -4,8 +4,10 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <limits>
 
 #include "registration/each_pose.hpp"
+#include "registration/free_space.hpp"
 
 namespace igsp {
 namespace {
@@ -15,14 +17,21 @@ constexpr double enough_agreement = 0.6;
 constexpr double rival_inliers = 0.5;  // of the winner's
 constexpr double matches_weight = 2;   // as in the quality of a pose
 
+// Free space puts proposals in order as if one in ten were contradicted as little as they are, whatever the rung.
+constexpr double rarity = 1, voxels = std::numeric_limits<double>::max();
+
+double evidence_of(const Rematch& match) {
+  return free_space_evidence(match.free_space, rarity, voxels);
+}
+
 bool is_clear(const Rematch& match) {
-  return match.evidence >= 0 && match.agreeing >= enough_agreeing &&
+  return evidence_of(match) >= 0 && match.agreeing >= enough_agreeing &&
          static_cast<double>(match.agreeing) >= enough_agreement * static_cast<double>(match.matches.size());
 }
 
 // What the quality of a pose has of both, in decades.
 double promise_of(const Rematch& match) {
-  return matches_weight * std::log10(static_cast<double>(match.agreeing) + 1) + match.evidence;
+  return matches_weight * std::log10(static_cast<double>(match.agreeing) + 1) + evidence_of(match);
 }
 
 // The pose with the most matches has the promise of them; where free space can tell like places apart, the better of
@@ -31,11 +40,11 @@ Rematch matched_again(CommonFrame& frame, const Transformation& pose, int degree
                       const FreeSpaceQuestion& ask_free_space) {
   Rematch by_vote = rematch(frame, pose, degrees_of_freedom, 1);
   if (!ask_free_space) return by_vote;
-  by_vote.evidence = ask_free_space(by_vote.target_from_source);
+  by_vote.free_space = ask_free_space(by_vote.target_from_source);
   Rematch in_place = fit_in_place(frame, pose, by_vote.matches, degrees_of_freedom);
   const double v = frame.target().features.voxel_size;
   if (same_pose(in_place.target_from_source, by_vote.target_from_source, Eigen::Vector3d::Zero(), v)) return by_vote;
-  in_place.evidence = ask_free_space(in_place.target_from_source);
+  in_place.free_space = ask_free_space(in_place.target_from_source);
   return promise_of(in_place) > promise_of(by_vote) ? in_place : by_vote;
 }
 

@@ -9,8 +9,8 @@
 
 namespace igsp {
 
-/// What free space says of a pose: log10 odds that it is right. Empty where no viewpoint is known.
-using FreeSpaceQuestion = std::function<double(const Transformation&)>;
+/// Is the space empty that the scanners saw through, if a pose is right? Not given where no viewpoint is known.
+using FreeSpaceQuestion = std::function<FreeSpace(const Transformation&)>;
 
 /// Matches proposals again in their common frame, those with most agreeing matches first, in the light of free space
 /// where that is known. A clear winner spares the others, except those with half of its inliers, which would be the

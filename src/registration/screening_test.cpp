@@ -60,14 +60,31 @@ TEST(Screening, WhatFreeSpaceContradictsIsNoClearWinnerAndComesLater) {
   const auto is_the_right_one = [&](const Transformation& pose) {
     return (pose.linear() - scene.truth.linear()).norm() < 0.05;
   };
-  const auto against = [&](const Transformation& pose) { return is_the_right_one(pose) ? -2.0 : 0.0; };
-  const auto against_others = [&](const Transformation& pose) { return is_the_right_one(pose) ? 0.0 : -2.0; };
+  const FreeSpace empty{FreeSpaceViolation{1000, 0}, std::nullopt}, filled{FreeSpaceViolation{1000, 200}, std::nullopt};
+  const auto against = [&](const Transformation& pose) { return is_the_right_one(pose) ? filled : empty; };
+  const auto against_others = [&](const Transformation& pose) { return is_the_right_one(pose) ? empty : filled; };
   const std::vector<Rematch> screened = screen(frame, proposals(scene, 0, 20, 9), Options(), against, silent);
   EXPECT_EQ(screened.size(), proposed);
   const auto place = std::ranges::find_if(screened, is_the_right_one, &Rematch::target_from_source);
   ASSERT_NE(place, screened.end());
-  EXPECT_EQ(place->evidence, -2.0);
+  EXPECT_EQ(place->free_space.source->contradicting, 200u);
   EXPECT_EQ(screen(other, proposals(scene, 0, 20, 9), Options(), against_others, silent).size(), 1u);
+}
+
+TEST(Screening, AHypothesisStaysWhereFreeSpaceContradictsTheVote) {
+  const Scene scene(4, {.half_side = 0.6});
+  CommonFrame frame = scene.frame();
+  Transformation beside = scene.truth;
+  beside.translation() += Eigen::Vector3d(3, 0, 0);
+  const FreeSpace empty{FreeSpaceViolation{1000, 0}, std::nullopt}, filled{FreeSpaceViolation{1000, 300}, std::nullopt};
+  const auto against_the_truth = [&](const Transformation& pose) {
+    return (pose.translation() - scene.truth.translation()).norm() < 1 ? filled : empty;
+  };
+  const std::vector<Hypothesis> hypotheses{{beside, 10}};
+  const Rematch found = screen(frame, hypotheses, Options(), against_the_truth, silent).front();
+  EXPECT_GT((found.target_from_source.translation() - scene.truth.translation()).norm(), 2);
+  const Rematch by_vote = screen(frame, hypotheses, Options(), {}, silent).front();
+  EXPECT_LT((by_vote.target_from_source.translation() - scene.truth.translation()).norm(), 0.3);
 }
 
 TEST(Screening, FewMatchesAreNoClearWinnerHoweverManyOfThemAgree) {
