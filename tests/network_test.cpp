@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
-#include "igsp/errors.hpp"
 #include "igsp/align.hpp"
+#include "igsp/errors.hpp"
 #include "igsp/evaluation.hpp"
 #include "igsp/simulation.hpp"
 
@@ -105,6 +105,10 @@ TEST(Network, TwoScansAreOneUnconfirmedLink) {
   const auto& covariance = network.scans[1].covariance;
   EXPECT_GT(covariance.diagonal().minCoeff(), 0);
   EXPECT_EQ(network.scans[0].covariance.norm(), 0);
+  // That of the pair, about another centre, which leaves the volume of the ellipsoid as it is.
+  const double axes =
+      std::pow(covariance.determinant() / network.links[0].precision.covariance.determinant(), 1.0 / 12);
+  EXPECT_NEAR(std::log(axes), 0, std::log(1.4)) << "half axes " << axes << " times as long";
 }
 
 // Its truth is exact, so the errors are those of the registration alone.

@@ -8,6 +8,7 @@
 #include "network/control.hpp"
 #include "network/pose_equations.hpp"
 #include "registration/point_to_plane.hpp"
+#include "registration/pose_covariance.hpp"
 
 namespace igsp {
 namespace {
@@ -89,7 +90,7 @@ class Bundle {
       const auto steps = linearise(k == 0 ? first_radius : search_radius).solve();
       if (!steps || apply_steps(*steps, centres_, poses_) < small_step) break;
     }
-    write_back(linearise(search_radius).covariances());
+    write_back(equations_of([this](std::size_t l) { return final_factor(*links_[l]); }).covariances());
   }
 
  private:
@@ -123,9 +124,14 @@ class Bundle {
   }
 
   PoseEquations linearise(double radius) {
+    return equations_of([&](std::size_t l) { return factor(*links_[l], radius, loss_scales_[l]); });
+  }
+
+  template <typename FactorOfLink>
+  PoseEquations equations_of(const FactorOfLink& factor_of) const {
     std::vector<RelativeFactor> factors(links_.size());
     parallel_blocks(links_.size(), threads_, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t l = begin; l < end; ++l) factors[l] = factor(*links_[l], radius, loss_scales_[l]);
+      for (std::size_t l = begin; l < end; ++l) factors[l] = factor_of(l);
     });
     PoseEquations equations(centres_, is_free_, options_.pair.degrees_of_freedom);
     for (const RelativeFactor& one : factors) equations.add(one);
@@ -133,23 +139,45 @@ class Bundle {
     return equations;
   }
 
-  // The loss follows the residuals of the step before, as it does where a pair is refined.
-  RelativeFactor factor(const NetworkLink& link, double radius, double& loss_scale) {
-    // The larger one moves, as it did when the pair was registered.
+  // At the poses as they are, and nothing but the damping. The larger one moves, as it did when the pair was
+  // registered.
+  RelativeFactor factor_between(const NetworkLink& link) const {
     const bool exchanged = surfaces_[link.target]->voxels() > surfaces_[link.source]->voxels();
-    const std::size_t moving = exchanged ? link.target : link.source, fixed = exchanged ? link.source : link.target;
-    const SharedSurface &source = *surfaces_[moving], &target = *surfaces_[fixed];
-    const Transformation pose = poses_[fixed].inverse() * poses_[moving];
-    const Linearisation at_pose =
-        linearise_at(source.surface(), target.surface(), pose, radius, max_points, 1, loss_scale);
+    RelativeFactor factor;
+    factor.source = exchanged ? link.target : link.source;
+    factor.target = exchanged ? link.source : link.target;
+    factor.target_from_source = poses_[factor.target].inverse() * poses_[factor.source];
+    factor.information.diagonal().head<3>().setConstant(surfaces_[factor.source]->squared_size() / (damping * damping));
+    factor.information.diagonal().tail<3>().setConstant(1 / (damping * damping));
+    return factor;
+  }
+
+  // The loss follows the residuals of the step before, as it does where a pair is refined.
+  RelativeFactor factor(const NetworkLink& link, double radius, double& loss_scale) const {
+    RelativeFactor result = factor_between(link);
+    const Linearisation at_pose = linearise_at(surfaces_[result.source]->surface(), surfaces_[result.target]->surface(),
+                                               result.target_from_source, radius, max_points, 1, loss_scale);
     loss_scale = loss_scale_of(at_pose.residual_variance, search_radius, 1);
-    RelativeFactor result{moving, fixed, pose, at_pose.centre, Matrix6::Zero(), Vector6::Zero()};
+    result.centre = at_pose.centre;
     if (at_pose.pairs >= min_pairs && at_pose.residual_variance > 0) {
-      result.information = at_pose.hessian / at_pose.residual_variance;
+      result.information += at_pose.hessian / at_pose.residual_variance;
       result.gradient = at_pose.gradient / at_pose.residual_variance;
     }
-    result.information.diagonal().head<3>().array() += source.squared_size() / (damping * damping);
-    result.information.diagonal().tail<3>().array() += 1 / (damping * damping);
+    return result;
+  }
+
+  // With how much the gradient scatters, patches of surface counting as one measurement each, as for a pair by itself.
+  RelativeFactor final_factor(const NetworkLink& link) const {
+    RelativeFactor result = factor_between(link);
+    const std::vector<PlanePair> pairs =
+        plane_pairs_at(surfaces_[result.source]->surface(), surfaces_[result.target]->surface(),
+                       result.target_from_source, search_radius, max_points);
+    result.scatter = result.information;
+    if (pairs.size() < min_pairs) return result;
+    const PoseCovariance at_pose = pose_covariance(pairs, search_radius, 1);
+    result.centre = at_pose.centre;
+    result.information += at_pose.curvature;
+    *result.scatter += at_pose.gradient_covariance;
     return result;
   }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/SparseCore>
+#include <Eigen/SparseCholesky>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -18,6 +18,9 @@ struct RelativeFactor {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   Matrix6 information = Matrix6::Zero();
   Vector6 gradient = Vector6::Zero();
+  /// Covariance of the gradient, of errors that the source or the target has in all its links; none: as large as the
+  /// information, and independent of other links.
+  std::optional<Matrix6> scatter = {};
 };
 
 /// What holds a scan where it is known to lie, as a quadratic in its own step.
@@ -39,19 +42,28 @@ class PoseEquations {
   /// One step per scan, 0 for those that stay; nothing where the equations do not determine them.
   std::optional<std::vector<Vector6>> solve() const;
 
-  /// Of every scan's step, 0 for those that stay or where the equations do not determine them.
+  /// Of every scan's step, 0 for those that stay or where the equations do not determine them: A^-1 B A^-1 with the
+  /// information A of all factors and the scatter B of their gradients. That of a link whose errors others share grows
+  /// as if it alone held its scans together: what is wrong in a scan no second link averages out.
   std::vector<Matrix6> covariances() const;
 
  private:
   static constexpr std::size_t stays = SIZE_MAX;
-  void add_block(std::size_t row, std::size_t column, const Matrix6& block);
-  Eigen::SparseMatrix<double> information() const;
+  using Entries = std::vector<Eigen::Triplet<double>>;
+  using Solver = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
+
+  void add_block(std::size_t row, std::size_t column, const Matrix6& block, Entries& entries) const;
+  void add_between(const RelativeFactor& factor, const Matrix6& block, Entries& entries) const;
+  double share_of(const RelativeFactor& factor, const Solver& solver) const;
+  std::vector<double> links_by_scan(const Solver& solver) const;
+  Eigen::SparseMatrix<double> matrix_of(const Entries& entries) const;
 
   std::span<const Eigen::Vector3d> centres_;
   int size_;                          // of a step: its last entries
   std::vector<std::size_t> unknown_;  // place among the unknowns
   std::size_t unknowns_ = 0;
-  std::vector<Eigen::Triplet<double>> entries_;
+  Entries information_, scatter_;       // without that of `shared_`
+  std::vector<RelativeFactor> shared_;  // factors with a scatter of their own
   Eigen::VectorXd gradient_;
 };
 

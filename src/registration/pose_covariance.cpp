@@ -119,10 +119,13 @@ PoseCovariance pose_covariance(std::span<const PlanePair> pairs, double radius, 
   if (!(result.residual_variance > 0)) return result;
   const double patch = std::min(patch_size * voxel_size, size_of(pairs, weighted));
   const Sums sums = sum_up(pairs, weighted, patch);
-  result.information = sums.hessian / result.residual_variance;
+  const Matrix6 scatter = scatter_of(sums, weighted.sum, result.residual_variance);
+  result.curvature = sums.hessian / result.residual_variance;
+  result.gradient_covariance = beyond_patches / (result.residual_variance * result.residual_variance) * scatter;
+  result.information = result.curvature;
   if (!is_determined(sums.hessian)) return result;
   const Eigen::LDLT<Matrix6> solver(sums.hessian);
-  const Matrix6 half = solver.solve(scatter_of(sums, weighted.sum, result.residual_variance));
+  const Matrix6 half = solver.solve(scatter);
   const Matrix6 covariance = solver.solve(half.transpose());
   result.covariance = 0.5 * beyond_patches * (covariance + covariance.transpose());
   result.information = result.covariance.ldlt().solve(Matrix6::Identity());

@@ -12,6 +12,11 @@ struct PoseCovariance {
   double residual_variance = 0;                                                  ///< [units of the cloud ^ 2]
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  ///< 0 where not determined
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+
+  // What both are made of, for whoever adds several pairs of scans up: H over the variance of the residuals, and the
+  // covariance of the gradient in the same unit, which would be the same if residuals were independent.
+  Eigen::Matrix<double, 6, 6> curvature = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 6> gradient_covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
 /// The covariance of the robust least squares estimate, with residuals that are alike where they lie near each other:
