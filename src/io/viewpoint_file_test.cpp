@@ -66,11 +66,16 @@ TEST(ViewpointOfAFile, ReadsBackAsItWasWritten) {
   EXPECT_FALSE(read_points(folder / "a.xyz").viewpoint);
 }
 
-TEST(ViewpointOfAFile, MovesWithThePoints) {
-  const TemporaryFolder folder;
+Transformation quarter_turn_and_shift() {
   Transformation motion = Transformation::Identity();
   motion.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   motion.translation() = Vector3d(10, 20, 30);
+  return motion;
+}
+
+TEST(ViewpointOfAFile, MovesWithThePoints) {
+  const TemporaryFolder folder;
+  const Transformation motion = quarter_turn_and_shift();
   const auto source = folder.write("a.ply", ply_with("comment viewpoint 1 0 -0.5"));
   write_moved(source, folder / "b.ply", motion);
   EXPECT_EQ(read_points(folder / "b.ply").viewpoint, Vector3d(10, 21, 29.5));
@@ -82,9 +87,7 @@ TEST(ViewpointOfAFile, MovesWithThePoints) {
 
 TEST(ViewpointOfAFile, TheDefaultOneOfAPcdMovesOnlyIfItIsKnownToBeTrue) {
   const TemporaryFolder folder;
-  Transformation motion = Transformation::Identity();
-  motion.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
-  motion.translation() = Vector3d(10, 20, 30);
+  const Transformation motion = quarter_turn_and_shift();
   const auto source = folder.write("a.pcd", pcd_with("VIEWPOINT 0 0 0 1 0 0 0"));
   write_moved(source, folder / "b.pcd", motion);
   EXPECT_FALSE(read_points(folder / "b.pcd").viewpoint);
@@ -95,13 +98,12 @@ TEST(ViewpointOfAFile, TheDefaultOneOfAPcdMovesOnlyIfItIsKnownToBeTrue) {
 
 TEST(ViewpointOfAFile, WhatIsKnownTakesThePlaceOfWhatItSays) {
   const TemporaryFolder folder;
-  Transformation motion = Transformation::Identity();
-  motion.translation() = Vector3d(10, 20, 30);
+  const Transformation motion = quarter_turn_and_shift();
   for (const auto& [name, content] : {std::pair("a.pcd", pcd_with("VIEWPOINT 1 0 -0.5 1 0 0 0")),
                                       std::pair("a.ply", ply_with("comment viewpoint 1 0 -0.5"))}) {
     const auto source = folder.write(name, content), moved = folder / (std::string("moved_") + name);
     write_moved(source, moved, motion, {.viewpoint = Vector3d(4, 5, 6)});
-    EXPECT_EQ(read_points(moved).viewpoint, Vector3d(14, 25, 36)) << name;
+    EXPECT_EQ(read_points(moved).viewpoint, Vector3d(5, 24, 36)) << name;
   }
 }
 

@@ -12,13 +12,13 @@ namespace {
 
 constexpr double agreeing_distance = 2.5;  // voxels
 // Log odds of 1 right to 1 wrong answer: docs/verdict.md tells how they were fitted.
-constexpr double contact_weight = 2.0, matches_weight = 2.0, missing_weight = 5.0, even = 4.4;
+constexpr double contact_weight = 2.0, missing_weight = 5.0, even = 4.4;
 constexpr double most_contact = 0.97;       // wrong poses of like surfaces come as near; more says no more
 constexpr double expected_agreement = 0.7;  // share of mutual matches that agree, over overlap: right poses have more
 
 // Of the two questions that need no viewpoint.
 double quality_of(const PoseAssessment& pose) {
-  const double s = std::min(most_contact, std::sqrt(pose.source_on_target.share * pose.target_on_source.share));
+  const double s = std::min(most_contact, pose.contact());
   const auto agreeing = static_cast<double>(pose.agreeing_matches);
   // Where much overlaps much must agree: the same architecture elsewhere lies well on itself, yet few features agree.
   return contact_weight * std::log10(s / (1 - s)) + matches_weight * std::log10(agreeing + 1) +
@@ -30,20 +30,23 @@ double quality_of(const PoseAssessment& pose) {
 constexpr double undemanding_overlap = 0.4, demanding_overlap = 0.7, decades_per_overlap = 3.0;
 
 // Free space confirms what contact and matches say, not in place of them: that is little on large voxels, nothing for
-// the first number of them and all for the second, and where surfaces cross. Right poses of clean scans touch at 0.8
-// and more; one of the bunny was 5.4 degrees off at 0.72.
+// the first number of them and all for the second, and where surfaces cross. Whatever was registered before it weighed
+// so much touched at 0.8 and more (docs/decisions, 15).
 constexpr double coarse_voxels = 300, fine_voxels = 3000;
 constexpr double crossing = 0.7, lying = 0.8;
 
 double weight_of_free_space(const PoseAssessment& pose, const CommonFrame& frame) {
   const double voxels = std::sqrt(static_cast<double>(frame.source().features.points.size()) *
                                   static_cast<double>(frame.target().features.points.size()));
-  const double contact = std::sqrt(pose.source_on_target.share * pose.target_on_source.share);
   return std::clamp(std::log(voxels / coarse_voxels) / std::log(fine_voxels / coarse_voxels), 0.0, 1.0) *
-         std::clamp((contact - crossing) / (lying - crossing), 0.0, 1.0);
+         std::clamp((pose.contact() - crossing) / (lying - crossing), 0.0, 1.0);
 }
 
 }  // namespace
+
+double PoseAssessment::contact() const {
+  return std::sqrt(source_on_target.share * target_on_source.share);
+}
 
 double PoseAssessment::overlap() const {
   return std::sqrt(source_on_target.overlap * target_on_source.overlap);

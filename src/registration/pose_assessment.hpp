@@ -6,6 +6,9 @@
 
 namespace igsp {
 
+/// Decades of quality for a decade of agreeing matches.
+constexpr double matches_weight = 2.0;
+
 /// What the clouds themselves say of a pose: two independent questions, three where a viewpoint is known.
 struct PoseAssessment {
   SurfaceContact source_on_target;  ///< do the surfaces lie on each other wherever they meet?
@@ -17,6 +20,7 @@ struct PoseAssessment {
   double quality = 0;                ///< Q, docs/method.md
   /// Share of the mutual matches that agree, in terms of what right poses of such an overlap have at least.
   double share_of_expected() const;
+  double contact() const;  ///< share, geometric mean of both directions
   double overlap() const;  ///< geometric mean of both directions: one cloud may lie inside the other
   /// Odds that the pose is chance, against that it is right.
   double chance_odds() const;

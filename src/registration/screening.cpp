@@ -7,6 +7,7 @@
 
 #include "registration/each_pose.hpp"
 #include "registration/free_space.hpp"
+#include "registration/pose_assessment.hpp"
 
 namespace igsp {
 namespace {
@@ -14,7 +15,6 @@ namespace {
 constexpr std::size_t enough_agreeing = 15;
 constexpr double enough_agreement = 0.6;
 constexpr double rival_inliers = 0.5;  // of the winner's
-constexpr double matches_weight = 2;   // as in the quality of a pose
 
 double evidence_of(const Rematch& match) {
   return free_space_evidence(match.free_space, usual_rarity, 1);

@@ -166,7 +166,7 @@ Doubts judge(ScaleLadder& scales, const SearchOutcome& outcome, Result& result) 
   result.precision.free_directions = judgement.free_directions;
   result.evidence.mutual_matches = pose.mutual_matches;
   result.evidence.agreeing_matches = pose.agreeing_matches;
-  result.evidence.contact_share = std::sqrt(pose.source_on_target.share * pose.target_on_source.share);
+  result.evidence.contact_share = pose.contact();
   result.evidence.quality = pose.quality;
   result.evidence.rival_odds = judgement.rival_odds;
   result.evidence.free_space = pose.free_space;
