@@ -389,6 +389,7 @@ class OptionsOfTheCommand(CommandTest):
             (["--pca-radius", "nan"], "keypoints.pca_radius"),
             (["--threads", "1.5"], ["threads", "an integer", '"1.5"']),
             (["--dof", "5"], "4 or 6"),
+            (["--level", "0.4"], ["level", "--level", "0.4", "[0.5, 1]"]),
             (["--search", "drect"], ["drect", "direct, hypotheses"]),
             (["--preset", "papr"], ['"papr"', 'did you mean "paper"']),
             (["--threads"], "--threads"),

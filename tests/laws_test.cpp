@@ -246,6 +246,22 @@ TEST(LawsOfTheVerdict, CovarianceOfTheExchangedPairIsTheSameInTheOtherFrame) {
   EXPECT_NEAR(forward.precision.scale * backward.precision.scale, 1, 1e-12);
 }
 
+TEST(LawsOfTheVerdict, TheLevelDecidesAndChangesNothingElse) {
+  const Pair clouds = testing::simulated_pair("park", 20000);
+  const Result usual = align(clouds.source, clouds.target);
+  ASSERT_TRUE(usual.registered) << usual.reason;
+  ASSERT_LT(usual.confidence, 1);
+  Options options;
+  options.level = usual.confidence;
+  EXPECT_TRUE(align(clouds.source, clouds.target, options).registered);
+  options.level = std::nextafter(usual.confidence, 1);
+  const Result refused = align(clouds.source, clouds.target, options);
+  EXPECT_FALSE(refused.registered);
+  EXPECT_NE(refused.reason.find("below the level"), std::string::npos) << refused.reason;
+  EXPECT_EQ(refused.confidence, usual.confidence);
+  EXPECT_EQ(refused.target_from_source.matrix(), usual.target_from_source.matrix());
+}
+
 class AnyPreset : public ::testing::TestWithParam<const char*> {
  protected:
   Options options() const { return preset(GetParam()); }

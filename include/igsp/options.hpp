@@ -72,6 +72,7 @@ struct RefinementOptions {
 struct Options {
   Search search = Search::hypotheses;
   int degrees_of_freedom = 6;  ///< 6, or 4 for levelled scans (yaw and translation)
+  double level = 0.5;          ///< an answer is registered from this confidence on, [0.5, 1]
   int threads = 0;             ///< 0: all processors; the result does not depend on it
   ScaleOptions scale;
   KeypointOptions keypoints;

@@ -117,6 +117,7 @@ constexpr Listed usually(Range usual, Listed listed) {
 constexpr std::array listed{
     TOP(search, "--search", "", any(), "how the starting correspondences are found"),
     TOP(degrees_of_freedom, "--dof", "", either(4, 6), "6, or 4 for levelled scans (yaw and translation)"),
+    TOP(level, "--level", "", between(0.5, 1), "registered from this confidence on; nothing else depends on it"),
     TOP(threads, "--threads", "", between(0, 1024), "0: all processors; the result does not depend on it"),
     IN(scale, voxel_size, "--voxel-size", "units of the cloud", between(0, 1e150), "size of the voxel filter and unit of all lengths; 0: chosen from both clouds"),
     usually(from(1000), IN(scale, target_points, "--target-points", "", between(100, 100000000), "voxel centroids aimed at when the size is chosen, geometric mean of both clouds")),

@@ -123,6 +123,7 @@ Result align_in_order(const Features& source, const Features& target, bool is_ex
   if (!initial && options.search == Search::hypotheses) {
     compare_with_mirror_image(source, target, complete_both, clock, doubts, result);
   }
+  result.registered = result.confidence >= options.level;
   result.target_from_source = to_world(outcome.target_from_source, source, target);
   result.precision.centre += target.origin;
   if (result.runner_up) {

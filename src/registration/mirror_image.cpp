@@ -34,12 +34,11 @@ double confidence_of_mirror_image(const Features& source, const Features& target
 void compare_with_mirror_image(const Features& source, const Features& target, const CompleteBoth& complete_both,
                                StageClock& clock, Doubts& doubts, Result& result) {
   constexpr double beyond_doubt = 0.9;  // mirrored real scans reach 0.86
-  if (!result.registered || result.confidence >= beyond_doubt) return;
+  if (result.confidence < 0.5 || result.confidence >= beyond_doubt) return;
   const double of_image = confidence_of_mirror_image(source, target, complete_both, result.options, clock);
   if (of_image <= result.confidence) return;
   doubts.mirror_image_fits = true;
-  result.confidence /= result.confidence + of_image;
-  result.registered = false;
+  result.confidence /= result.confidence + of_image;  // less than a half
 }
 
 }  // namespace igsp

@@ -90,6 +90,11 @@ void give_reason(const PreparedCloud& target, const Doubts& doubts, Result& resu
   }
   const bool is_explained = is_free || doubts.is_of_another_scale || doubts.is_coarse || doubts.mirror_image_fits;
   if (result.registered || is_explained) return;
+  if (result.confidence >= 0.5) {
+    result.reason +=
+        fmt::format("; a confidence of {:.2f} is below the level of {}", result.confidence, result.options.level);
+    return;
+  }
   result.reason += doubts.is_ambiguous ? "; ambiguous: another pose explains the clouds about as well"
                                        : "; too little to tell it from chance";
   name_what_the_target_leaves_free(target, result);

@@ -207,7 +207,6 @@ Doubts judge(ScaleLadder& scales, const SearchOutcome& outcome, Result& result) 
   if (doubts.is_of_another_scale || doubts.is_coarse) {
     result.confidence = std::min(result.confidence, confidence_of_what_cannot_be);
   }
-  result.registered = result.confidence >= 0.5;
   return doubts;
 }
 

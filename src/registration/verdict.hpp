@@ -13,7 +13,7 @@ struct Doubts {
   bool is_of_another_scale = false;  ///< no rigid motion puts such a source where it belongs
 };
 
-/// Fills the verdict, overlap and RMSE of `result` from the pose that a search found; the reason is left to
+/// Fills confidence, evidence, overlap and RMSE of `result` from the pose that a search found; the reason is left to
 /// `give_reason`. Where the scale that answered does not carry it, the others are asked as well: sparse surfaces close
 /// at the coarser ones.
 Doubts judge(ScaleLadder& scales, const SearchOutcome& outcome, Result& result);

@@ -139,7 +139,7 @@ Json read_run(const std::filesystem::path& path) {
     return true;
   };
   try {
-    const Json run = Json::parse(text, limit_depth);
+    Json run = Json::parse(text, limit_depth);
     check.check(run, Json::parse(pattern_text), "");
     check.check_correspondences(run);
     return run;
