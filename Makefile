@@ -24,8 +24,9 @@ demo: setup
 	$(igsp) evaluate --transform $(demo)/estimate.txt --truth $(demo)/station_1_to_0.txt --source $(demo)/station_1.ply
 
 # What only the tests need. dpkg-dev, file and fakeroot make and install the packages, the shells and mandoc judge completion and
-# manual page, MkDocs builds the site, Chromium opens the report page, qemu-user is another processor.
-test_packages := dpkg-dev fakeroot file fish man-db mandoc mkdocs-material zsh chromium chromium-driver python3-selenium qemu-user
+# manual page, MkDocs builds the site, Chromium opens the report page, qemu-user is another processor, Clang another
+# compiler.
+test_packages := dpkg-dev fakeroot file fish man-db mandoc mkdocs-material zsh chromium chromium-driver python3-selenium qemu-user clang-14
 test: build
 	@scripts/setup.sh $(test_packages)
 	ctest --preset release -j $(jobs)
@@ -41,7 +42,7 @@ wheels: setup
 	cmake --build --preset release --target igsp_app
 	CXX=c++ /usr/bin/python3 scripts/wheels.py build/wheels dist build/release/bin/igsp
 
-asan: test_packages += clang-14 libclang-rt-14-dev
+asan: test_packages += libclang-rt-14-dev
 asan tsan:
 	@scripts/setup.sh $(test_packages)
 	cmake --preset $@
