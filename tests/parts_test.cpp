@@ -97,8 +97,8 @@ TEST_F(Parts, TheUnitOfLengthDoesNotMatter) {
     for (Points* points : {&source, &target}) {
       for (Eigen::Vector3d& point : *points) point *= unit;
     }
-    const Scan scan = with_parts(
-        source, {{one.points.size(), unit * one.viewpoint}, {two.points.size(), unit * two.viewpoint}});
+    const Scan scan =
+        with_parts(source, {{one.points.size(), unit * one.viewpoint}, {two.points.size(), unit * two.viewpoint}});
     Transformation truth = target_from_source_;
     truth.translation() *= unit;
     const Result result = align(scan, target, truth);

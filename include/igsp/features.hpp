@@ -45,7 +45,7 @@ struct Features {
 };
 
 /// Everything that depends on one cloud alone. Uses options.scale.voxel_size, or the cloud's own scale when it is 0.
-/// Throws InvalidArgument (empty cloud, non-finite point or viewpoint, parts that are not the cloud's, option out of range), Cancelled.
+/// Throws InvalidArgument (empty cloud, non-finite point or viewpoint, wrong parts, option out of range), Cancelled.
 Features extract_features(const Scan& cloud, const Options& options = {}, const ProgressCallback& progress = {});
 
 }  // namespace igsp

@@ -20,8 +20,8 @@ Result run(const Input& source, const Input& target, const std::optional<MatrixI
 }
 
 Result run_points(const PointsIn& source, const PointsIn& target, const PartsIn& source_parts,
-                  const PartsIn& target_parts, const std::optional<MatrixIn>& initial,
-                  const Keywords& keywords, nb::handle progress) {
+                  const PartsIn& target_parts, const std::optional<MatrixIn>& initial, const Keywords& keywords,
+                  nb::handle progress) {
   return run(scan_of(source, source_parts), scan_of(target, target_parts), initial, keywords, progress);
 }
 

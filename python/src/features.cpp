@@ -19,8 +19,7 @@ auto view(const Features& self) {
   return read_only_view(self.*member);
 }
 
-Features extract(const PointsIn& cloud, const PartsIn& parts, const Keywords& keywords,
-                 nb::handle progress) {
+Features extract(const PointsIn& cloud, const PartsIn& parts, const Keywords& keywords, nb::handle progress) {
   const Options options = options_of(keywords);
   const ProgressCallback callback = progress_of(progress);
   nb::gil_scoped_release unlocked;

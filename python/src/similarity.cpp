@@ -37,8 +37,8 @@ void bind_similarity(nb::module_& module) {
                            similarity.result.registered ? "registered" : "not registered", similarity.factor);
       });
   module.def("align_similarity", &run, nb::arg("source").noconvert(), nb::arg("target").noconvert(),
-             nb::arg("source_parts").noconvert(), nb::arg("target_parts").noconvert(),
-             nb::arg("options"), nb::arg("progress").none());
+             nb::arg("source_parts").noconvert(), nb::arg("target_parts").noconvert(), nb::arg("options"),
+             nb::arg("progress").none());
 }
 
 }  // namespace igsp::python

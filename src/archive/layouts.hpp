@@ -325,10 +325,10 @@ struct Layout<Network> {
   };
 };
 
-using AllStructs =
-    std::tuple<StrayPoints, ScanPart, ScannedPart, Features, KeypointMatch, IterationRecord, CloudSummary, FreeDirection, Precision,
-               FreeSpaceViolation, FreeSpace, Evidence, RunnerUp, Result, Diagnosis, PoseError, MatchQuality,
-               SimilarityResult, SimulatedScan, ViewpointFinding, NetworkScan, NetworkLink, NetworkCycle, Network>;
+using AllStructs = std::tuple<StrayPoints, ScanPart, ScannedPart, Features, KeypointMatch, IterationRecord,
+                              CloudSummary, FreeDirection, Precision, FreeSpaceViolation, FreeSpace, Evidence, RunnerUp,
+                              Result, Diagnosis, PoseError, MatchQuality, SimilarityResult, SimulatedScan,
+                              ViewpointFinding, NetworkScan, NetworkLink, NetworkCycle, Network>;
 
 template <typename T>
 concept HasLayout = requires {

@@ -46,8 +46,8 @@ CloudSummary summary_of(const Features& features) {
   if (viewpoint) *viewpoint += features.origin;
   Points part_viewpoints;
   for (const ScannedPart& part : features.parts) part_viewpoints.push_back(part.viewpoint + features.origin);
-  return {features.cloud_points, features.points.size(), features.keypoints.size(),
-          features.stray,        viewpoint,              part_viewpoints};
+  return {features.cloud_points, features.points.size(), features.keypoints.size(), features.stray, viewpoint,
+          part_viewpoints};
 }
 
 void check_compatible(const Features& source, const Features& target) {

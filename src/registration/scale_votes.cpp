@@ -42,7 +42,8 @@ std::vector<double> expected_factors(double own_ratio) {
 
 }  // namespace
 
-ScaledScan::ScaledScan(const Scan& scan, double factor) : points(scan.points.begin(), scan.points.end()), parts(scan.parts) {
+ScaledScan::ScaledScan(const Scan& scan, double factor)
+    : points(scan.points.begin(), scan.points.end()), parts(scan.parts) {
   for (Eigen::Vector3d& point : points) point *= factor;
   if (scan.viewpoint) viewpoint = factor * *scan.viewpoint;
   for (ScanPart& part : parts) {

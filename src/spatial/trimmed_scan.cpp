@@ -30,8 +30,8 @@ void require_parts_of(const Scan& scan, std::string_view name) {
     if (fits) left -= part.points;
   }
   if (fits && left == 0) return;
-  throw InvalidArgument(fmt::format("the parts of {} have {} points than it: each of its {} points is of one part", name,
-                                    fits ? "fewer" : "more", scan.points.size()));
+  throw InvalidArgument(fmt::format("the parts of {} have {} points than it: each of its {} points is of one part",
+                                    name, fits ? "fewer" : "more", scan.points.size()));
 }
 
 // A single scan is a cloud of one part.

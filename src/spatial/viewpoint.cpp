@@ -57,9 +57,8 @@ ViewpointFinding find_viewpoints(PointView points, const ViewpointRequest& reque
   for (std::size_t i = 0; i < declared.size(); ++i) {
     const PointView seen = points.subspan(begin, declared[i].points);
     begin += seen.size();
-    const ViewpointFinding found =
-        seen.empty() ? ViewpointFinding{{}, "unknown: it has no points", ""}
-                     : find_viewpoint(seen, request, declared[i].viewpoint);
+    const ViewpointFinding found = seen.empty() ? ViewpointFinding{{}, "unknown: it has no points", ""}
+                                                : find_viewpoint(seen, request, declared[i].viewpoint);
     all.parts[i].viewpoint = found.viewpoint;
     if (found.viewpoint) {
       ++known;

@@ -57,8 +57,8 @@ std::vector<std::string> left_out_of(const CloudInput& cloud);
 /// frame.
 void settle_viewpoint(CloudInput& cloud, const ViewpointRequest& request);
 
-/// Voxel centroids of the whole file, in its frame, in place of the points in memory; of several scans, of each. Read in
-/// chunks: memory grows with the voxels only.
+/// Voxel centroids of the whole file, in its frame, in place of the points in memory; of several scans, of each. Read
+/// in chunks: memory grows with the voxels only.
 void take_centroids(CloudInput& cloud, double voxel_size, std::string_view stage, const ProgressCallback& progress);
 
 }  // namespace igsp::cli

@@ -30,7 +30,7 @@ class PointSample {
   bool is_in(const Eigen::Vector3d& point) const;
 
   std::size_t limit_, seen_ = 0;
-  int halvings_ = 0;  // a share of 2^-halvings of the different points is kept
+  int halvings_ = 0;                      // a share of 2^-halvings of the different points is kept
   std::vector<std::size_t> sizes_ = {0};  // of `kept_`, by scan
   Points kept_;
 };
