@@ -145,7 +145,7 @@ def test_the_command(two_scans, stations, target, tmp_path, pip_command):
 
     info = run("info", two_scans)
     assert "2 scans in one file, all of their viewpoints known" in info
-    assert f"scan 1                 {len(stations[2][0])} points, scanner at " in info
+    assert f"scan 1              {len(stations[2][0])} points, scanner at " in info
 
     output = f"aligned{two_scans.suffix}"
     answer = run("align", two_scans, target, "-o", output, "--report", "r.json", "--transform", "T.txt")

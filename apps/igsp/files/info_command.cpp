@@ -53,7 +53,7 @@ std::string viewpoint_text(const ViewpointFinding& found) {
 void print_parts(const CloudInput& cloud) {
   for (std::size_t i = 0; i < cloud.parts.size(); ++i) {
     const std::optional<Eigen::Vector3d>& place = cloud.viewpoint.parts[i].viewpoint;
-    std::cout << fmt::format("    scan {:<15}  {} points, scanner {}\n", i, cloud.parts[i].total,
+    std::cout << fmt::format("    scan {:<15}{} points, scanner {}\n", i, cloud.parts[i].total,
                              place ? place_text(*place) : "unknown");
   }
 }
