@@ -109,7 +109,7 @@ MUTANTS = [
     ("registration/free_space.cpp", "violation - tolerated)", "violation)", "tolerance of the violation"),
     ("registration/free_space.cpp", "evidence - std::min(decades_per_share", "evidence + std::min(decades_per_share", "sign of the violation"),
     ("registration/free_space.cpp", "static_cast<float>(reach)) >= 0;", "static_cast<float>(reach)) < 0;", "what lies on a surface does not contradict"),
-    ("registration/free_space.cpp", "return Sight::contradicts;", "sight = Sight::possible;", "one of several scanners suffices to contradict"),
+    ("registration/free_space.cpp", "return Sight::contradicts;", "{ sight = Sight::contradicts; continue; }", "one of several scanners suffices to contradict"),
     ("features/features.cpp", "local_centroids(kept, scan.cloud.bounds()", "local_centroids(scan.cloud.points(), scan.cloud.bounds()", "each of several scanners saw its own points alone"),
     ("registration/free_space.hpp", "target_from_source.inverse(), most_looks)", "target_from_source, most_looks)", "direction of the second view"),
     ("registration/free_space.cpp", "(as_little + 1)", "1", "worth by the proposals contradicted as little"),
