@@ -30,8 +30,8 @@ Eigen::Vector3d vector_of(const VectorIn& vector) {
 std::vector<ScanPart> parts_of(const PartsIn& parts) {
   std::vector<ScanPart> all;
   for (const auto& [points, viewpoint] : parts) {
-    ScanPart& part = all.emplace_back(points);
-    if (viewpoint) part.viewpoint = vector_of(*viewpoint);
+    all.push_back({points, {}});
+    if (viewpoint) all.back().viewpoint = vector_of(*viewpoint);
   }
   return all;
 }
