@@ -19,11 +19,18 @@ inline constexpr int bsc_bits = 435;
 inline constexpr int bsc_words = 7;
 using Descriptor = std::array<std::uint64_t, bsc_words>;
 
+/// What one of several scans saw, where its viewpoint is known.
+struct ScannedPart {
+  Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();  ///< local
+  Points fine_points;                                   ///< centroids of the finer voxels of its own points, local
+};
+
 /// What the method knows of one cloud. Coordinates are relative to `origin` (world = local + origin), so that clouds in
 /// survey coordinates lose nothing.
 struct Features {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  std::optional<Eigen::Vector3d> viewpoint;  ///< where the scanner stood, local; none: unknown
+  std::optional<Eigen::Vector3d> viewpoint;  ///< where the scanner stood, local; none: unknown, or several
+  std::vector<ScannedPart> parts;            ///< of a cloud of several scans, those whose viewpoint is known
   double voxel_size = 0.0;
   Points points;                         ///< voxel centroids, local
   std::vector<float> curvature;          ///< per point: surface variation, [0, 1/3]
@@ -38,7 +45,7 @@ struct Features {
 };
 
 /// Everything that depends on one cloud alone. Uses options.scale.voxel_size, or the cloud's own scale when it is 0.
-/// Throws InvalidArgument (empty cloud, non-finite point or viewpoint, option out of range), Cancelled.
+/// Throws InvalidArgument (empty cloud, non-finite point or viewpoint, wrong parts, option out of range), Cancelled.
 Features extract_features(const Scan& cloud, const Options& options = {}, const ProgressCallback& progress = {});
 
 }  // namespace igsp

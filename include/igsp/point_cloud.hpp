@@ -15,6 +15,12 @@ using Points = std::vector<Eigen::Vector3d>;
 /// A view of such points; a C-contiguous (N, 3) float64 array can be viewed without a copy.
 using PointView = std::span<const Eigen::Vector3d>;
 
+/// One of several scans in a cloud, whose points lie one after the other.
+struct ScanPart {
+  std::size_t points = 0;
+  std::optional<Eigen::Vector3d> viewpoint;  ///< where its scanner stood, in the frame of the cloud; none: unknown
+};
+
 /// A cloud and, where it is known, where its scanner stood, in the frame of the points. A viewpoint many extents away
 /// stands for a scanner that looked along one direction. None: unknown, or fused from scans of several places.
 struct Scan {
@@ -25,6 +31,9 @@ struct Scan {
 
   PointView points;
   std::optional<Eigen::Vector3d> viewpoint;
+  /// Of a cloud fused from several scans, if their points are not mixed: all of them, in the order of the points. Each
+  /// has its own viewpoint then, and the cloud has none.
+  std::vector<ScanPart> parts = {};
 };
 
 /// Few points far from all others: a row of zeros in survey coordinates, a -9999 for "nothing measured", a bird. One of

@@ -52,6 +52,7 @@ struct CloudSummary {
   std::size_t keypoints = 0;
   StrayPoints stray;                         ///< of the points as given, those that were left out
   std::optional<Eigen::Vector3d> viewpoint;  ///< where the scanner stood, as given
+  Points part_viewpoints;                    ///< of a cloud of several scans, those that are known, as given
 };
 
 /// A rigid motion of the source that hardly changes how it lies on the target: the surfaces do not fix it.

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "igsp/point_cloud.hpp"
 
@@ -36,9 +37,10 @@ HiddenPoints hidden_points(PointView points, const Eigen::Vector3d& viewpoint, i
 
 /// A scanner's viewpoint and why it is believed.
 struct ViewpointFinding {
-  std::optional<Eigen::Vector3d> viewpoint;  ///< none: unknown
+  std::optional<Eigen::Vector3d> viewpoint;  ///< none: unknown, or several
   std::string reason;                        ///< such as "given", "the file says so", "none is known"
   std::string warning;                       ///< why what was given is not used; mostly empty
+  std::vector<ScanPart> parts = {};          ///< of a cloud of several scans: each with its own viewpoint, if known
 };
 
 /// Settles where the scanner stood. A viewpoint from which most points are hidden contradicts the cloud and is not
@@ -46,5 +48,10 @@ struct ViewpointFinding {
 /// the cloud has one depth a direction from there and not from places about it. Throws as hidden_points.
 ViewpointFinding find_viewpoint(PointView points, const ViewpointRequest& request,
                                 const std::optional<Eigen::Vector3d>& declared = {});
+
+/// The same for a cloud of several scans, as Scan has it: each is asked for by its own points alone. `declared`: with
+/// what the file says of each. A viewpoint that is given is that of the whole cloud, as if it were one scan.
+ViewpointFinding find_viewpoints(PointView points, const ViewpointRequest& request,
+                                 const std::vector<ScanPart>& declared);
 
 }  // namespace igsp

@@ -209,6 +209,8 @@ TEST(ArchiveReasons, OfFeaturesThatContradictThemselves) {
            {reason_of([](Features& f) { f.frames[2](1, 1) = 2; }), "an entry of frames is not finite or beyond"},
            {reason_of([&](Features& f) { f.curvature[1] = static_cast<float>(nan); }), "a curvature is not finite"},
            {reason_of([&](Features& f) { f.viewpoint->x() = nan; }), "viewpoint is not finite"},
+           {reason_of([&](Features& f) { f.parts[1].viewpoint.x() = nan; }), "viewpoint of a part is not finite"},
+           {reason_of([](Features& f) { f.parts[1].fine_points[2].x() = 1e10; }), "an entry of fine_points of a part"},
            {reason_of([&](Features& f) { f.origin.x() = nan; }), "origin is not finite"},
            {reason_of([](Features& f) { f.voxel_size = -1; }), "voxel_size is negative or not finite"}}) {
     EXPECT_EQ(text.find("it contradicts itself: " + expected), 0u) << text;

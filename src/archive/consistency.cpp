@@ -41,6 +41,10 @@ void require_consistent(const Features& features) {
   require(std::isfinite(features.voxel_size) && features.voxel_size >= 0, "voxel_size is negative or not finite");
   require(features.origin.allFinite(), "origin is not finite");
   require(!features.viewpoint || features.viewpoint->allFinite(), "viewpoint is not finite");
+  for (const ScannedPart& part : features.parts) {
+    require(part.viewpoint.allFinite(), "viewpoint of a part is not finite");
+    require_entries_up_to(max_voxels_from_centre * features.voxel_size, part.fine_points, "fine_points of a part");
+  }
   require_one_each(features.curvature, "curvatures", features.points, "points");
   require_one_each(features.normals, "normals", features.points, "points");
   require_one_each(features.frames, "frames", features.keypoints, "keypoints");

@@ -38,11 +38,30 @@ struct Layout<StrayPoints> {
 };
 
 template <>
+struct Layout<ScanPart> {
+  static constexpr std::string_view name = "ScanPart";
+  static constexpr std::tuple fields = {
+      Field{"points", &ScanPart::points},
+      Field{"viewpoint", &ScanPart::viewpoint},
+  };
+};
+
+template <>
+struct Layout<ScannedPart> {
+  static constexpr std::string_view name = "ScannedPart";
+  static constexpr std::tuple fields = {
+      Field{"viewpoint", &ScannedPart::viewpoint},
+      Field{"fine_points", &ScannedPart::fine_points},
+  };
+};
+
+template <>
 struct Layout<Features> {
   static constexpr std::string_view name = "Features";
   static constexpr std::tuple fields = {
       Field{"origin", &Features::origin},
       Field{"viewpoint", &Features::viewpoint},
+      Field{"parts", &Features::parts},
       Field{"voxel_size", &Features::voxel_size},
       Field{"points", &Features::points},
       Field{"curvature", &Features::curvature},
@@ -91,7 +110,7 @@ struct Layout<CloudSummary> {
   static constexpr std::tuple fields = {
       Field{"points", &CloudSummary::points},       Field{"voxels", &CloudSummary::voxels},
       Field{"keypoints", &CloudSummary::keypoints}, Field{"stray", &CloudSummary::stray},
-      Field{"viewpoint", &CloudSummary::viewpoint},
+      Field{"viewpoint", &CloudSummary::viewpoint}, Field{"part_viewpoints", &CloudSummary::part_viewpoints},
   };
 };
 
@@ -201,6 +220,7 @@ struct Layout<ViewpointFinding> {
       Field{"viewpoint", &ViewpointFinding::viewpoint},
       Field{"reason", &ViewpointFinding::reason},
       Field{"warning", &ViewpointFinding::warning},
+      Field{"parts", &ViewpointFinding::parts},
   };
 };
 
@@ -305,10 +325,10 @@ struct Layout<Network> {
   };
 };
 
-using AllStructs =
-    std::tuple<StrayPoints, Features, KeypointMatch, IterationRecord, CloudSummary, FreeDirection, Precision,
-               FreeSpaceViolation, FreeSpace, Evidence, RunnerUp, Result, Diagnosis, PoseError, MatchQuality,
-               SimilarityResult, SimulatedScan, ViewpointFinding, NetworkScan, NetworkLink, NetworkCycle, Network>;
+using AllStructs = std::tuple<StrayPoints, ScanPart, ScannedPart, Features, KeypointMatch, IterationRecord,
+                              CloudSummary, FreeDirection, Precision, FreeSpaceViolation, FreeSpace, Evidence, RunnerUp,
+                              Result, Diagnosis, PoseError, MatchQuality, SimilarityResult, SimulatedScan,
+                              ViewpointFinding, NetworkScan, NetworkLink, NetworkCycle, Network>;
 
 template <typename T>
 concept HasLayout = requires {

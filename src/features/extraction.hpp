@@ -2,20 +2,15 @@
 
 #include "core/stage_clock.hpp"
 #include "igsp/features.hpp"
-#include "spatial/trimmed_cloud.hpp"
+#include "spatial/trimmed_scan.hpp"
 
 namespace igsp {
-
-/// Throws InvalidArgument.
-void require_finite(const std::optional<Eigen::Vector3d>& viewpoint);
 
 /// When normals, keypoints and what belongs to them are made.
 enum class Keypoints { now, later };
 
-/// extract_features for a cloud whose stray points are known already, and with a finite viewpoint. What is left for
-/// later is made by `complete`.
-Features extract_features(const TrimmedCloud& cloud, const std::optional<Eigen::Vector3d>& viewpoint,
-                          const Options& options, const ProgressCallback& progress,
+/// extract_features for a scan whose stray points are known already. What is left for later is made by `complete`.
+Features extract_features(const TrimmedScan& scan, const Options& options, const ProgressCallback& progress,
                           Keypoints keypoints = Keypoints::now);
 
 /// Makes what was left for later, if it was.

@@ -55,34 +55,52 @@ void find_keypoints(const PointGrid& grid, const Options& options, StageClock& c
   features.keypoints = detect_keypoints(features.points, grid, pca, features.voxel_size, options.keypoints);
 }
 
+// Voxel boundaries start at the corner, which moves exactly with the cloud.
+Points local_centroids(PointView cloud, const Bounds& bounds, double voxel_size) {
+  Points centroids = voxel_centroids(cloud, bounds.min, voxel_size);
+  const Eigen::Vector3d to_centre = 0.5 * (bounds.max - bounds.min);
+  for (Eigen::Vector3d& point : centroids) point -= to_centre;
+  return centroids;
+}
+
+// Where the scanners stood. Of several scans each saw its own points alone, so that voxels must not mix them.
+void take_viewpoints(const TrimmedScan& scan, const ScatterFilter& filter, Features& features) {
+  if (scan.parts.size() == 1) {
+    features.viewpoint = *scan.parts.front().viewpoint - features.origin;
+    return;
+  }
+  std::size_t begin = 0;
+  for (const ScanPart& part : scan.parts) {
+    const PointView points = scan.cloud.points().subspan(begin, part.points);
+    begin += part.points;
+    if (!part.viewpoint) continue;
+    const Points kept = without_scatter(points, filter);
+    features.parts.push_back({*part.viewpoint - features.origin,
+                              local_centroids(kept, scan.cloud.bounds(), fine_voxels * features.voxel_size)});
+  }
+}
+
 // Where single precision is at home, and back.
-Features extract_in_unit(double unit, const TrimmedCloud& cloud, const std::optional<Eigen::Vector3d>& viewpoint,
-                         Options options, const ProgressCallback& progress) {
+Features extract_in_unit(double unit, const TrimmedScan& scan, Options options, const ProgressCallback& progress) {
   options.scale.voxel_size /= unit;
-  Features features = extract_features(cloud.in_unit(unit), in_unit(viewpoint, unit), options, progress);
+  Features features = extract_features(scan.in_unit(unit), options, progress);
   scale_lengths(features, unit);
   return features;
 }
 
 }  // namespace
 
-void require_finite(const std::optional<Eigen::Vector3d>& viewpoint) {
-  if (!viewpoint || viewpoint->allFinite()) return;
-  throw InvalidArgument(fmt::format("viewpoint = {},{},{} is not finite; three finite coordinates are needed",
-                                    viewpoint->x(), viewpoint->y(), viewpoint->z()));
-}
-
 Features extract_features(const Scan& scan, const Options& options, const ProgressCallback& progress) {
   validate(options);
-  require_finite(scan.viewpoint);
-  return extract_features(TrimmedCloud(scan.points, "cloud"), scan.viewpoint, options, progress);
+  return extract_features(TrimmedScan(scan, "cloud"), options, progress);
 }
 
-Features extract_features(const TrimmedCloud& trimmed, const std::optional<Eigen::Vector3d>& viewpoint,
-                          const Options& options, const ProgressCallback& progress, Keypoints keypoints) {
+Features extract_features(const TrimmedScan& scan, const Options& options, const ProgressCallback& progress,
+                          Keypoints keypoints) {
+  const TrimmedCloud& trimmed = scan.cloud;
   const Bounds& bounds = trimmed.bounds();
   if (const double unit = unit_of_length(bounds, bounds, options.scale.voxel_size); unit != 1) {
-    return extract_in_unit(unit, trimmed, viewpoint, options, progress);
+    return extract_in_unit(unit, scan, options, progress);
   }
   PointView cloud = trimmed.points();
   StageClock clock(progress);
@@ -92,16 +110,12 @@ Features extract_features(const TrimmedCloud& trimmed, const std::optional<Eigen
   clock.start("voxel grid");
   features.voxel_size = choose_voxel_size(trimmed, trimmed, options.scale);
   features.origin = centre_of(bounds);
-  if (viewpoint) features.viewpoint = *viewpoint - features.origin;
   const ScatterFilter filter(cloud, bounds, scatter_density(cloud, bounds), scatter_cell * features.voxel_size);
   const Points kept = filter.keeps_all() ? Points() : without_scatter(cloud, filter);
   if (!filter.keeps_all()) cloud = kept;
-  // Voxel boundaries start at the corner, which moves exactly with the cloud.
-  features.points = voxel_centroids(cloud, bounds.min, features.voxel_size);
-  const Eigen::Vector3d to_centre = 0.5 * (bounds.max - bounds.min);
-  for (Eigen::Vector3d& point : features.points) point -= to_centre;
-  features.fine_points = voxel_centroids(cloud, bounds.min, fine_voxels * features.voxel_size);
-  for (Eigen::Vector3d& point : features.fine_points) point -= to_centre;
+  features.points = local_centroids(cloud, bounds, features.voxel_size);
+  features.fine_points = local_centroids(cloud, bounds, fine_voxels * features.voxel_size);
+  take_viewpoints(scan, filter, features);
 
   if (keypoints == Keypoints::now) complete(options, clock, features);
   clock.finish();
@@ -124,6 +138,10 @@ Features mirrored_features(const Features& features, const Options& options) {
   }
   image.origin = image.origin.cwiseProduct(reflection);
   if (image.viewpoint) *image.viewpoint = image.viewpoint->cwiseProduct(reflection);
+  for (ScannedPart& part : image.parts) {
+    part.viewpoint = part.viewpoint.cwiseProduct(reflection);
+    for (Eigen::Vector3d& point : part.fine_points) point = point.cwiseProduct(reflection);
+  }
   const ProgressCallback silent;
   StageClock clock(silent);
   describe_keypoints(support_grid(image, options), options, clock, image);

@@ -44,7 +44,10 @@ Points keypoints_in_world(const Features& features) {
 CloudSummary summary_of(const Features& features) {
   std::optional<Eigen::Vector3d> viewpoint = features.viewpoint;
   if (viewpoint) *viewpoint += features.origin;
-  return {features.cloud_points, features.points.size(), features.keypoints.size(), features.stray, viewpoint};
+  Points part_viewpoints;
+  for (const ScannedPart& part : features.parts) part_viewpoints.push_back(part.viewpoint + features.origin);
+  return {features.cloud_points, features.points.size(), features.keypoints.size(), features.stray, viewpoint,
+          part_viewpoints};
 }
 
 void check_compatible(const Features& source, const Features& target) {
@@ -164,12 +167,6 @@ Result align_features(const Features& source, const Features& target, const Comp
   return align_in_order(target, source, true, complete_both, inverse ? &*inverse : nullptr, options, progress);
 }
 
-// A scan without its stray points.
-struct TrimmedScan {
-  TrimmedCloud cloud;
-  std::optional<Eigen::Vector3d> viewpoint;
-};
-
 Result align_points(const TrimmedScan& source, const TrimmedScan& target, const Transformation* initial,
                     const Options& options, const ProgressCallback& progress) {
   const double extent = std::max(source.cloud.bounds().diagonal(), target.cloud.bounds().diagonal());
@@ -182,7 +179,7 @@ Result align_points(const TrimmedScan& source, const TrimmedScan& target, const 
   Features source_features, target_features;
   const auto extract = [&](const TrimmedScan& scan, Features& features) {
     return [&](const ProgressCallback& report) {
-      features = extract_features(scan.cloud, scan.viewpoint, scaled, report, Keypoints::later);
+      features = extract_features(scan, scaled, report, Keypoints::later);
       features.timings_s.clear();  // the clock here tells of both
     };
   };
@@ -217,19 +214,15 @@ Options options_in_unit(Options options, double unit) {
 Result align_scans(const Scan& source, const Scan& target, const Transformation* initial, const Options& options,
                    const ProgressCallback& progress) {
   validate(options);
-  require_finite(source.viewpoint);
-  require_finite(target.viewpoint);
-  std::optional<TrimmedCloud> source_cloud, target_cloud;
+  std::optional<TrimmedScan> moving_scan, fixed_scan;
   concurrently(
-      options.threads, {}, [&](const ProgressCallback&) { source_cloud.emplace(source.points, "source"); },
-      [&](const ProgressCallback&) { target_cloud.emplace(target.points, "target"); });
-  const TrimmedScan moving{std::move(*source_cloud), source.viewpoint};
-  const TrimmedScan fixed{std::move(*target_cloud), target.viewpoint};
+      options.threads, {}, [&](const ProgressCallback&) { moving_scan.emplace(source, "source"); },
+      [&](const ProgressCallback&) { fixed_scan.emplace(target, "target"); });
+  const TrimmedScan &moving = *moving_scan, &fixed = *fixed_scan;
   const double unit = unit_of_length(moving.cloud.bounds(), fixed.cloud.bounds(), options.scale.voxel_size);
   if (unit == 1) return align_points(moving, fixed, initial, options, progress);
   const auto guess = guess_in_unit(initial, unit);
-  Result result = align_points({moving.cloud.in_unit(unit), in_unit(moving.viewpoint, unit)},
-                               {fixed.cloud.in_unit(unit), in_unit(fixed.viewpoint, unit)}, guess ? &*guess : nullptr,
+  Result result = align_points(moving.in_unit(unit), fixed.in_unit(unit), guess ? &*guess : nullptr,
                                options_in_unit(options, unit), progress);
   scale_lengths(result, unit);
   return result;

@@ -41,26 +41,40 @@ double FreeSpace::violation() const {
 }
 
 ScannedSpace::ScannedSpace(const Features& features) : features_(features) {
-  if (!features.viewpoint) return;
-  seen_ = Seen{PointGrid(features.points, on_surface * features.voxel_size),
-               RangeImage(features.fine_points, *features.viewpoint, features.voxel_size)};
+  if (features.viewpoint) images_.emplace_back(features.fine_points, *features.viewpoint, features.voxel_size);
+  for (const ScannedPart& part : features.parts) {
+    images_.emplace_back(part.fine_points, part.viewpoint, features.voxel_size);
+  }
+  if (is_known()) surface_.emplace(features.points, on_surface * features.voxel_size);
+}
+
+bool ScannedSpace::is_on_surface(const Eigen::Vector3d& point, double growth) const {
+  const double reach = on_surface * growth * features_.voxel_size;
+  return surface_->nearest(point.cast<float>(), static_cast<float>(reach)) >= 0;
+}
+
+ScannedSpace::Sight ScannedSpace::look_at(const Eigen::Vector3d& point) const {
+  Sight sight = Sight::out_of_view;
+  for (const RangeImage& image : images_) {
+    const RangeImage::Look look = image.look_at(point);
+    if (look.sight == RangeImage::Sight::out_of_view) continue;
+    if (look.sight == RangeImage::Sight::empty && !is_on_surface(point, look.growth)) return Sight::contradicts;
+    sight = Sight::possible;
+  }
+  return sight;
 }
 
 std::optional<FreeSpaceViolation> ScannedSpace::violation_by(const ScannedSpace& moved,
                                                              const Transformation& this_from_moved,
                                                              std::size_t most_looks) const {
-  if (!seen_) return {};
+  if (!is_known()) return {};
   FreeSpaceViolation violation;
   const Points& points = moved.features_.points;
   const std::size_t stride = std::max<std::size_t>(1, points.size() / most_looks);
   for (std::size_t i = 0; i < points.size(); i += stride) {
-    const Eigen::Vector3d point = this_from_moved * points[i];
-    const auto [sight, growth] = seen_->image.look_at(point);
-    if (sight == RangeImage::Sight::out_of_view) continue;
-    ++violation.in_view;
-    if (sight == RangeImage::Sight::possible) continue;
-    const double reach = on_surface * growth * features_.voxel_size;
-    if (seen_->surface.nearest(point.cast<float>(), static_cast<float>(reach)) < 0) ++violation.contradicting;
+    const Sight sight = look_at(this_from_moved * points[i]);
+    violation.in_view += sight != Sight::out_of_view;
+    violation.contradicting += sight == Sight::contradicts;
   }
   return violation;
 }

@@ -9,25 +9,26 @@
 
 namespace igsp {
 
-/// A cloud's voxels, and what its scanner saw from where it stood. Refers to the features.
+/// A cloud's voxels, and what its scanners saw from where they stood: one, or one a part. Refers to the features.
 class ScannedSpace {
  public:
   explicit ScannedSpace(const Features& features);
 
-  bool is_known() const { return seen_.has_value(); }
+  bool is_known() const { return !images_.empty(); }
 
-  /// How `moved` contradicts what this scanner saw; nothing where its viewpoint is not known. Looks at an even
-  /// selection of about as many voxels.
+  /// How `moved` contradicts what these scanners saw: a place is in view if one of them saw it, and empty if one saw
+  /// through it. Nothing where no viewpoint is known. Looks at an even selection of about as many voxels.
   std::optional<FreeSpaceViolation> violation_by(const ScannedSpace& moved, const Transformation& this_from_moved,
                                                  std::size_t most_looks) const;
 
  private:
-  struct Seen {
-    PointGrid surface;  // of the voxels
-    RangeImage image;
-  };
+  enum class Sight { out_of_view, possible, contradicts };
+  Sight look_at(const Eigen::Vector3d& point) const;
+  bool is_on_surface(const Eigen::Vector3d& point, double growth) const;
+
   const Features& features_;
-  std::optional<Seen> seen_;  // where the viewpoint is known
+  std::vector<RangeImage> images_;    // of the parts whose viewpoint is known
+  std::optional<PointGrid> surface_;  // of the voxels, where any is known
 };
 
 /// What free space says of a pose, as log10 odds that it is right; exactly 0 where no viewpoint is known. `rarity`: how

@@ -142,6 +142,81 @@ TEST(FreeSpace, DoesNotDependOnTheFrame) {
   EXPECT_NEAR(there.target->share(), here.target->share(), 0.02);
 }
 
+/// Scans one after the other, as one cloud.
+struct Fused {
+  void add(const Points& scan, const std::optional<Vector3d>& viewpoint) {
+    points.insert(points.end(), scan.begin(), scan.end());
+    parts.push_back({scan.size(), viewpoint});
+  }
+  Scan scan() const {
+    Scan fused(points);
+    fused.parts = parts;
+    return fused;
+  }
+  Points points;
+  std::vector<ScanPart> parts;
+};
+
+/// Of a station in each of the two rooms.
+Fused both_rooms(const std::optional<Vector3d>& left, const std::optional<Vector3d>& right) {
+  Fused fused;
+  fused.add(two_rooms().seen_from(left_eye, Random(1)), left);
+  fused.add(two_rooms().seen_from(right_eye, Random(2)), right);
+  return fused;
+}
+
+TEST(FreeSpace, ACloudOfSeveralScansDoesNotContradictItself) {
+  const Fused fused = both_rooms(left_eye, right_eye);
+  const FreeSpace f = violations(fused.scan(), fused.scan());
+  ASSERT_TRUE(f.source && f.target);
+  EXPECT_EQ(f.violation(), 0);
+  EXPECT_GT(f.source->in_view, 800u);
+}
+
+TEST(FreeSpace, WhatOneOfSeveralScannersSawThroughIsEmpty) {
+  const Points again = two_rooms().seen_from(Vector3d(-4.4, 1.5, 1.5), Random(3));  // of the left room
+  const auto violation = [&](const auto& left, const auto& right, const Transformation& motion) {
+    const Fused fused = both_rooms(left, right);
+    return violations(again, fused.scan(), motion).violation();
+  };
+  const Transformation still = Transformation::Identity(), next_door = shift(6, 0, 0);
+  EXPECT_LT(violation(left_eye, right_eye, still), 0.01);
+  EXPECT_GT(violation(left_eye, right_eye, next_door), 0.05);
+  EXPECT_GT(violation(std::nullopt, right_eye, next_door), 0.05);
+  EXPECT_LT(violation(left_eye, std::nullopt, next_door), 0.02);  // who sees nothing of that room cannot say
+}
+
+// A scanner sees through what it saw, not through what only another one did.
+TEST(FreeSpace, EachScannerAnswersForItsOwnPointsAlone) {
+  const Points near = Boxes{{box(2, -1, -1, 2.1, 1, 1)}}.seen_from(Vector3d::Zero(), Random(1)),
+               far = Boxes{{box(6, -3, -3, 6.1, 3, 3)}}.seen_from(Vector3d(4, 0, 0), Random(2));
+  Fused fused;
+  fused.add(near, Vector3d::Zero());
+  fused.add(far, Vector3d(4, 0, 0));
+  Points pane;  // between both, behind the one wall and before the other
+  for (double y = -0.5; y < 0.5; y += 0.02)
+    for (double z = -0.5; z < 0.5; z += 0.02) pane.push_back({5, y, z});
+  const FreeSpace f = violations(pane, fused.scan());
+  EXPECT_GT(f.source->in_view, 100u);
+  EXPECT_EQ(f.source->contradicting, f.source->in_view);
+  fused.parts[1].viewpoint.reset();
+  EXPECT_EQ(violations(pane, fused.scan()).source->contradicting, 0u);
+}
+
+TEST(FreeSpace, TheOrderOfThePartsIsNothing) {
+  const Points again = two_rooms().seen_from(Vector3d(-4.4, 1.5, 1.5), Random(3));
+  const Fused fused = both_rooms(left_eye, right_eye);
+  Fused turned;
+  turned.add(Points(fused.points.begin() + static_cast<std::ptrdiff_t>(fused.parts[0].points), fused.points.end()),
+             right_eye);
+  turned.add(Points(fused.points.begin(), fused.points.begin() + static_cast<std::ptrdiff_t>(fused.parts[0].points)),
+             left_eye);
+  const FreeSpace one = violations(again, fused.scan(), shift(6, 0, 0)),
+                  other = violations(again, turned.scan(), shift(6, 0, 0));
+  EXPECT_EQ(one.source->in_view, other.source->in_view);
+  EXPECT_EQ(one.source->contradicting, other.source->contradicting);
+}
+
 TEST(FreeSpace, FewInViewSayLittle) {
   EXPECT_LT((FreeSpaceViolation{2, 2}).share(), 0.1);
   EXPECT_GT((FreeSpaceViolation{1000, 1000}).share(), 0.95);

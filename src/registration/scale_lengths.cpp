@@ -18,8 +18,9 @@ void scale(IterationRecord& record, double factor) {
 }
 
 void scale(CloudSummary& summary, double factor) {
-  auto& [points, voxels, keypoints, stray, viewpoint] = summary;
+  auto& [points, voxels, keypoints, stray, viewpoint, part_viewpoints] = summary;
   if (viewpoint) *viewpoint *= factor;
+  for (Eigen::Vector3d& place : part_viewpoints) place *= factor;
 }
 
 void scale(Precision& precision, double factor) {

@@ -42,9 +42,19 @@ std::vector<double> expected_factors(double own_ratio) {
 
 }  // namespace
 
-ScaledScan::ScaledScan(const Scan& scan, double factor) : points(scan.points.begin(), scan.points.end()) {
+ScaledScan::ScaledScan(const Scan& scan, double factor)
+    : points(scan.points.begin(), scan.points.end()), parts(scan.parts) {
   for (Eigen::Vector3d& point : points) point *= factor;
   if (scan.viewpoint) viewpoint = factor * *scan.viewpoint;
+  for (ScanPart& part : parts) {
+    if (part.viewpoint) *part.viewpoint *= factor;
+  }
+}
+
+Scan ScaledScan::scan() const {
+  Scan scan(points, viewpoint);
+  scan.parts = parts;
+  return scan;
 }
 
 RatioPeak scale_vote(const Features& source, const Features& target, double expected, const Options& options) {
@@ -60,13 +70,13 @@ RatioPeak scale_vote(const Features& source, const Features& target, double expe
 
 std::vector<double> voted_factors(const Scan& source, const Scan& target, const Options& options,
                                   const ProgressCallback& progress) {
-  const TrimmedCloud moving(source.points, "source"), fixed(target.points, "target");
-  if (!(moving.bounds().diagonal() > 0) || !(fixed.bounds().diagonal() > 0)) return {};
-  const double source_size = own_voxel_size(moving, options), target_size = own_voxel_size(fixed, options);
+  const TrimmedScan moving(source.points, "source"), fixed(target.points, "target");  // viewpoints say nothing here
+  if (!(moving.cloud.bounds().diagonal() > 0) || !(fixed.cloud.bounds().diagonal() > 0)) return {};
+  const double source_size = own_voxel_size(moving.cloud, options), target_size = own_voxel_size(fixed.cloud, options);
   Options scaled = options;
-  const auto features_at = [&](const TrimmedCloud& cloud, double voxel_size) {
+  const auto features_at = [&](const TrimmedScan& scan, double voxel_size) {
     scaled.scale.voxel_size = voxel_size;
-    return extract_features(cloud, std::nullopt, scaled, progress);
+    return extract_features(scan, scaled, progress);
   };
   const Features target_features = features_at(fixed, target_size);
   std::vector<RatioPeak> peaks;

@@ -20,9 +20,10 @@ std::vector<double> voted_factors(const Scan& source, const Scan& target, const 
 /// The scan, all lengths multiplied.
 struct ScaledScan {
   ScaledScan(const Scan& scan, double factor);
-  Scan scan() const { return {points, viewpoint}; }
+  Scan scan() const;
   Points points;
   std::optional<Eigen::Vector3d> viewpoint;
+  std::vector<ScanPart> parts;
 };
 
 }  // namespace igsp

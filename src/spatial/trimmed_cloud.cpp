@@ -108,6 +108,12 @@ TrimmedCloud::TrimmedCloud(PointView cloud, std::string_view name) : given_(clou
   std::ranges::copy_if(cloud, std::back_inserter(kept_), [&](const auto& point) { return contains(bounds_, point); });
 }
 
+std::size_t TrimmedCloud::count_kept(PointView given) const {
+  if (stray_.count == 0) return given.size();
+  return static_cast<std::size_t>(
+      std::ranges::count_if(given, [&](const auto& point) { return contains(bounds_, point); }));
+}
+
 TrimmedCloud TrimmedCloud::in_unit(double unit) const {
   TrimmedCloud scaled = *this;
   scaled.kept_.assign(points().begin(), points().end());

@@ -14,7 +14,8 @@ class TrimmedCloud {
   PointView points() const { return kept_.empty() ? given_ : PointView(kept_); }
   const Bounds& bounds() const { return bounds_; }  ///< of `points`
   const StrayPoints& stray() const { return stray_; }
-  TrimmedCloud in_unit(double unit) const;  ///< the same, all lengths divided by `unit`, a power of two
+  std::size_t count_kept(PointView given) const;  ///< how many of these points of the cloud as given are in `points`
+  TrimmedCloud in_unit(double unit) const;        ///< the same, all lengths divided by `unit`, a power of two
 
  private:
   PointView given_;

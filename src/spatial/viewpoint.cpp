@@ -48,4 +48,27 @@ ViewpointFinding find_viewpoint(PointView points, const ViewpointRequest& reques
   return viewpoint_at_origin(points);
 }
 
+ViewpointFinding find_viewpoints(PointView points, const ViewpointRequest& request,
+                                 const std::vector<ScanPart>& declared) {
+  if (request.kind != ViewpointRequest::Kind::automatic) return find_viewpoint(points, request);
+  ViewpointFinding all{.viewpoint = {}, .reason = "", .warning = "", .parts = declared};
+  std::size_t begin = 0, known = 0;
+  std::string unknown;  // why, of the first that is
+  for (std::size_t i = 0; i < declared.size(); ++i) {
+    const PointView seen = points.subspan(begin, declared[i].points);
+    begin += seen.size();
+    const ViewpointFinding found = seen.empty() ? ViewpointFinding{{}, "unknown: it has no points", ""}
+                                                : find_viewpoint(seen, request, declared[i].viewpoint);
+    all.parts[i].viewpoint = found.viewpoint;
+    if (found.viewpoint) {
+      ++known;
+    } else if (unknown.empty()) {
+      unknown = fmt::format(", that of scan {} is {}", i, found.reason);
+    }
+  }
+  all.reason = fmt::format("{} scans in one file, {} of their viewpoints known{}", declared.size(),
+                           known == declared.size() ? "all" : std::to_string(known), unknown);
+  return all;
+}
+
 }  // namespace igsp

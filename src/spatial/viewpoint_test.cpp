@@ -164,6 +164,47 @@ TEST(ViewpointAtOrigin, UnknownInDoubt) {
   expect_reason(Points(100, Vector3d::Zero()), "outside");
 }
 
+// A room, and a tent in it that hides all of it from where the first scanner stood before.
+TEST(FindViewpoints, EachScanIsAskedByItsOwnPoints) {
+  const Vector3d other = eye + Vector3d(0.05, 0, 0);
+  Points points = room_seen_from(eye, 30000);
+  Random random(2);
+  for (int i = 0; i < 20000; ++i) points.push_back(eye + 0.3 * random.direction());
+  EXPECT_FALSE(find_viewpoint(points, {}, eye).viewpoint);
+  const ViewpointFinding both = find_viewpoints(points, {}, {{30000, eye}, {20000, other}});
+  EXPECT_FALSE(both.viewpoint);
+  EXPECT_EQ(both.reason, "2 scans in one file, all of their viewpoints known");
+  ASSERT_EQ(both.parts.size(), 2u);
+  EXPECT_EQ(both.parts[0].viewpoint, eye);
+  EXPECT_EQ(both.parts[1].points, 20000u);
+  EXPECT_EQ(both.parts[1].viewpoint, other);
+}
+
+TEST(FindViewpoints, OneThatItsOwnPointsContradictIsLeftOut) {
+  Points points = room_seen_from(eye, 30000);
+  const Points second = room_seen_from(eye, 20000, 2);
+  points.insert(points.end(), second.begin(), second.end());
+  const ViewpointFinding found = find_viewpoints(points, {}, {{30000, eye}, {0, eye}, {20000, Vector3d(9, 7, 0)}});
+  EXPECT_EQ(found.parts[0].viewpoint, eye);
+  EXPECT_FALSE(found.parts[1].viewpoint);
+  EXPECT_FALSE(found.parts[2].viewpoint);
+  EXPECT_EQ(found.reason,
+            "3 scans in one file, 1 of their viewpoints known, that of scan 1 is unknown: it has no points");
+  const ViewpointFinding wrong = find_viewpoints(points, {}, {{30000, eye}, {20000, Vector3d(9, 7, 0)}});
+  EXPECT_NE(wrong.reason.find("that of scan 1 is unknown: what the file says contradicts its points"),
+            std::string::npos)
+      << wrong.reason;
+}
+
+TEST(FindViewpoints, WhatIsSaidIsOfTheWholeCloud) {
+  const Points points = room_seen_from(eye, 30000);
+  const std::vector<ScanPart> halves = {{15000, eye}, {15000, eye}};
+  const ViewpointFinding given = find_viewpoints(points, parse_viewpoint("--v", "0.1,0.2,0.3!"), halves);
+  EXPECT_EQ(given.viewpoint, Vector3d(0.1, 0.2, 0.3));
+  EXPECT_TRUE(given.parts.empty());
+  EXPECT_TRUE(find_viewpoints(points, parse_viewpoint("--v", "none"), halves).parts.empty());
+}
+
 TEST(ParseViewpoint, EveryForm) {
   using Kind = ViewpointRequest::Kind;
   EXPECT_EQ(parse_viewpoint("--v", "auto").kind, Kind::automatic);
