@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +16,8 @@ from igsp._core import Features, Result
 from igsp.arrays import Matrix, Points, matrix_array, points_array
 
 Path = str | os.PathLike[str]
+Parts: TypeAlias = Sequence[tuple[int, Points | None]]
+"""For each scan of a cloud: how many points are of it, one scan after the other, and its viewpoint, (3,)."""
 
 
 def read_points(path: Path) -> Points:
@@ -30,29 +34,29 @@ class LoadedCloud:
     """What a file or an object in memory holds for `align`."""
 
     points: Points
-    viewpoint: Points | None  # (3,), as stated
-    scans: int = 1  # of which the points are: several have no viewpoint in common
+    parts: Parts  # with viewpoints as stated
 
 
 def load_cloud(path: Path, stacklevel: int = 5) -> LoadedCloud:
-    """As `read_points`, with the viewpoint that the file states."""
+    """As `read_points`, with the viewpoints that the file states."""
     from igsp import formats  # not before it is needed
 
     name = os.fspath(path)
-    scans = 1
     if formats.is_supported(name) and not name.lower().endswith(".pts"):
         cloud = formats.read_cloud(name)
-        points, dropped, viewpoint, scans = cloud.points, cloud.dropped, cloud.viewpoint, cloud.scan_count
+        points, dropped, viewpoint = cloud.points, cloud.dropped, cloud.viewpoint
+        parts = [(part.point_count, part.viewpoint) for part in cloud.parts]
         if cloud.note:
             warnings.warn(f"{name}: {cloud.note}", stacklevel=stacklevel)
     else:
         points, dropped, viewpoint = _core.read_points(name)
+        parts = []
     if dropped:
         warnings.warn(
             f"{name}: dropped {dropped} of {dropped + len(points)} points with a coordinate that is not finite",
             stacklevel=stacklevel,
         )
-    return LoadedCloud(points, viewpoint, scans)
+    return LoadedCloud(points, parts or [(len(points), viewpoint)])
 
 
 def write_points(

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from igsp import _core
 from igsp._core import Diagnosis, Features, Result, SimilarityResult
 from igsp.arrays import Points, matrix_array
+from igsp.files import Parts
 from igsp.progress import ProgressBar, ProgressFunction
 from igsp.viewpoints import Viewpoint, load, settle
 
@@ -39,7 +40,7 @@ def align(
         the Features of one. A C-contiguous float64 array is not copied; do not change it while the call runs.
     `initial`: (4, 4) guess of target_from_source; it is checked and refined if it holds, there is no search.
     `source_viewpoint`, `target_viewpoint`: where the scanner stood, (3,) in the frame of its points (a far point: it
-        looked along one direction); None: unknown, or a fused cloud; "auto": see `find_viewpoint`; "x,y,z!" is used even
+        looked along one direction); None: unknown, or of mixed scans; "auto": see `find_viewpoint`; "x,y,z!" is used even
         where the cloud contradicts it. Features keep theirs.
     `progress`: True draws bars on standard error; a function is called with stage and share done, see ProgressFunction.
     `options`: as `igsp.options()` lists them, such as voxel_size [units of the cloud], dof=4, preset="paper", threads.
@@ -136,7 +137,7 @@ def plain_options(options: OptionKeywords) -> dict[str, Any]:
 
 def _load_both(
     source: object, target: object, source_viewpoint: Viewpoint, target_viewpoint: Viewpoint
-) -> tuple[Points, Points, Points | None, Points | None]:
+) -> tuple[Points, Points, Parts, Parts]:
     moving, fixed = load(source, "source"), load(target, "target")
     return (
         moving.points,

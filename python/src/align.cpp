@@ -19,17 +19,17 @@ Result run(const Input& source, const Input& target, const std::optional<MatrixI
   return align(source, target, transformation_of(*initial), options, callback);
 }
 
-Result run_points(const PointsIn& source, const PointsIn& target, const std::optional<VectorIn>& source_viewpoint,
-                  const std::optional<VectorIn>& target_viewpoint, const std::optional<MatrixIn>& initial,
-                  const Keywords& keywords, nb::handle progress) {
-  return run(scan_of(source, source_viewpoint), scan_of(target, target_viewpoint), initial, keywords, progress);
+Result run_points(const PointsIn& source, const PointsIn& target, const PartsIn& source_parts,
+                  const PartsIn& target_parts, const std::optional<MatrixIn>& initial, const Keywords& keywords,
+                  nb::handle progress) {
+  return run(scan_of(source, source_parts), scan_of(target, target_parts), initial, keywords, progress);
 }
 
 }  // namespace
 
 void bind_align(nb::module_& module) {
   module.def("align_points", &run_points, nb::arg("source").noconvert(), nb::arg("target").noconvert(),
-             nb::arg("source_viewpoint").noconvert().none(), nb::arg("target_viewpoint").noconvert().none(),
+             nb::arg("source_parts").noconvert(), nb::arg("target_parts").noconvert(),
              nb::arg("initial").noconvert().none(), nb::arg("options"), nb::arg("progress").none());
   module.def("align_features", &run<Features>, nb::arg("source"), nb::arg("target"),
              nb::arg("initial").noconvert().none(), nb::arg("options"), nb::arg("progress").none());

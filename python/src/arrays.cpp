@@ -27,9 +27,18 @@ Eigen::Vector3d vector_of(const VectorIn& vector) {
   return {vector(0), vector(1), vector(2)};
 }
 
-Scan scan_of(const PointsIn& points, const std::optional<VectorIn>& viewpoint) {
+std::vector<ScanPart> parts_of(const PartsIn& parts) {
+  std::vector<ScanPart> all;
+  for (const auto& [points, viewpoint] : parts) {
+    all.push_back({points, {}});
+    if (viewpoint) all.back().viewpoint = vector_of(*viewpoint);
+  }
+  return all;
+}
+
+Scan scan_of(const PointsIn& points, const PartsIn& parts) {
   Scan scan(view_of(points));
-  if (viewpoint) scan.viewpoint = vector_of(*viewpoint);
+  scan.parts = parts_of(parts);
   return scan;
 }
 

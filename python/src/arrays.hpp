@@ -1,10 +1,14 @@
 #pragma once
 
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/vector.h>
 
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "bindings.hpp"
@@ -23,7 +27,10 @@ PointView view_of(const PointsIn& points);
 std::span<const KeypointMatch> view_of(const MatchesIn& matches);
 Transformation transformation_of(const MatrixIn& matrix);
 Eigen::Vector3d vector_of(const VectorIn& vector);
-Scan scan_of(const PointsIn& points, const std::optional<VectorIn>& viewpoint);
+// Of each scan of a cloud its number of points and its viewpoint; nothing: none is known.
+using PartsIn = std::vector<std::pair<std::size_t, std::optional<VectorIn>>>;
+std::vector<ScanPart> parts_of(const PartsIn& parts);
+Scan scan_of(const PointsIn& points, const PartsIn& parts);
 
 // What goes out. Features come in again, where a changed index would be trusted: read-only views of them, ...
 template <typename Scalar, nb::ssize_t... sizes>

@@ -13,14 +13,11 @@
 namespace igsp::python {
 namespace {
 
-std::vector<Diagnosis> run(const PointsIn& source, const PointsIn& target,
-                           const std::optional<VectorIn>& source_viewpoint,
-                           const std::optional<VectorIn>& target_viewpoint, const Result& refused, bool search,
-                           nb::handle progress) {
+std::vector<Diagnosis> run(const PointsIn& source, const PointsIn& target, const PartsIn& source_parts,
+                           const PartsIn& target_parts, const Result& refused, bool search, nb::handle progress) {
   const ProgressCallback callback = progress_of(progress);
   nb::gil_scoped_release unlocked;
-  return diagnose(scan_of(source, source_viewpoint), scan_of(target, target_viewpoint), refused, {.search = search},
-                  callback);
+  return diagnose(scan_of(source, source_parts), scan_of(target, target_parts), refused, {.search = search}, callback);
 }
 
 std::optional<Array<double, 4, 4>> matrix_of(const Diagnosis& diagnosis) {
@@ -42,8 +39,8 @@ void bind_diagnosis(nb::module_& module) {
       .def("__repr__",
            [](const Diagnosis& diagnosis) { return fmt::format("<Diagnosis: {}>", to_string(diagnosis.cause)); });
   module.def("diagnose", &run, nb::arg("source").noconvert(), nb::arg("target").noconvert(),
-             nb::arg("source_viewpoint").noconvert().none(), nb::arg("target_viewpoint").noconvert().none(),
-             nb::arg("refused"), nb::arg("search"), nb::arg("progress").none());
+             nb::arg("source_parts").noconvert(), nb::arg("target_parts").noconvert(), nb::arg("refused"),
+             nb::arg("search"), nb::arg("progress").none());
 }
 
 }  // namespace igsp::python

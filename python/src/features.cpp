@@ -19,12 +19,11 @@ auto view(const Features& self) {
   return read_only_view(self.*member);
 }
 
-Features extract(const PointsIn& cloud, const std::optional<VectorIn>& viewpoint, const Keywords& keywords,
-                 nb::handle progress) {
+Features extract(const PointsIn& cloud, const PartsIn& parts, const Keywords& keywords, nb::handle progress) {
   const Options options = options_of(keywords);
   const ProgressCallback callback = progress_of(progress);
   nb::gil_scoped_release unlocked;
-  return extract_features(scan_of(cloud, viewpoint), options, callback);
+  return extract_features(scan_of(cloud, parts), options, callback);
 }
 
 }  // namespace
@@ -36,7 +35,15 @@ void bind_features(nb::module_& module) {
       .def_prop_ro("origin", &view<&Features::origin>, "(3,) float64.")
       .def_prop_ro(
           "viewpoint", [](const Features& features) { return array_of(features.viewpoint); }, nb::rv_policy::automatic,
-          "(3,) float64: where the scanner stood, local; None: unknown.")
+          "(3,) float64: where the scanner stood, local; None: unknown, or several.")
+      .def_prop_ro(
+          "part_viewpoints",
+          [](const Features& features) {
+            Points places;
+            for (const ScannedPart& part : features.parts) places.push_back(part.viewpoint);
+            return array_of(std::move(places));
+          },
+          nb::rv_policy::automatic, "(K, 3) float64: of a cloud of several scans, those that are known, local.")
       .def_ro("voxel_size", &Features::voxel_size, "[units of the cloud].")
       .def_prop_ro("points", &view<&Features::points>, "(N, 3) float64: voxel centroids, local.")
       .def_prop_ro("curvature", &view<&Features::curvature>, "(N,) float32: surface variation, [0, 1/3].")
@@ -55,7 +62,7 @@ void bind_features(nb::module_& module) {
         return fmt::format("<Features: {} keypoints of {} voxels of {:.4g}>", features.keypoints.size(),
                            features.points.size(), features.voxel_size);
       });
-  module.def("extract_features", &extract, nb::arg("cloud").noconvert(), nb::arg("viewpoint").noconvert().none(),
+  module.def("extract_features", &extract, nb::arg("cloud").noconvert(), nb::arg("parts").noconvert(),
              nb::arg("options"), nb::arg("progress").none());
 }
 

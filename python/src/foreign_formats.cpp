@@ -35,6 +35,15 @@ std::optional<Eigen::Vector3d> point_of(nb::handle array) {
   return vector_of(nb::cast<VectorIn>(array));
 }
 
+// Of several scans; a single one has no parts.
+std::vector<ScanPart> parts_of(nb::handle parts) {
+  std::vector<ScanPart> all;
+  for (const nb::handle part : parts) {
+    all.push_back({nb::cast<std::size_t>(part.attr("point_count")), point_of(part.attr("viewpoint"))});
+  }
+  return all;
+}
+
 void delete_in_python(Chunks* chunks) {
   nb::gil_scoped_acquire lock;
   delete chunks;
@@ -55,9 +64,9 @@ cli::ForeignCloud open(nb::handle formats, const fs::path& path, bool keep_noise
             [chunks] {
               return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("metadata").attr("noise")); });
             },
+        .part = [chunks] { return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("part")); }); },
         .viewpoint = [chunks] { return in_python([&] { return point_of(chunks->iterator.attr("viewpoint")); }); },
-        .scans =
-            [chunks] { return in_python([&] { return nb::cast<std::size_t>(chunks->iterator.attr("scan_count")); }); }};
+        .parts = [chunks] { return in_python([&] { return parts_of(chunks->iterator.attr("parts")); }); }};
   });
 }
 

@@ -72,7 +72,11 @@ void bind_evidence(nb::module_& module) {
       .def_ro("keypoints", &CloudSummary::keypoints, "Keypoints among them.")
       .def_prop_ro(
           "viewpoint", [](const CloudSummary& cloud) { return array_of(cloud.viewpoint); }, nb::rv_policy::automatic,
-          "(3,) float64: where the scanner stood, in the cloud's frame; None: unknown.");
+          "(3,) float64: where the scanner stood, in the cloud's frame; None: unknown, or several.")
+      .def_prop_ro(
+          "part_viewpoints", [](const CloudSummary& cloud) { return array_of(Points(cloud.part_viewpoints)); },
+          nb::rv_policy::automatic,
+          "(K, 3) float64: of a cloud of several scans, those that are known, in the cloud's frame.");
   portable_class<Evidence>(
       module, "Evidence",
       "What the verdict is made of: two independent questions to the clouds, three where a viewpoint is known.")

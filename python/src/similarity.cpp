@@ -12,12 +12,12 @@
 namespace igsp::python {
 namespace {
 
-SimilarityResult run(const PointsIn& source, const PointsIn& target, const std::optional<VectorIn>& source_viewpoint,
-                     const std::optional<VectorIn>& target_viewpoint, const Keywords& keywords, nb::handle progress) {
+SimilarityResult run(const PointsIn& source, const PointsIn& target, const PartsIn& source_parts,
+                     const PartsIn& target_parts, const Keywords& keywords, nb::handle progress) {
   const Options options = options_of(keywords);
   const ProgressCallback callback = progress_of(progress);
   nb::gil_scoped_release unlocked;
-  return align_similarity(scan_of(source, source_viewpoint), scan_of(target, target_viewpoint), options, callback);
+  return align_similarity(scan_of(source, source_parts), scan_of(target, target_parts), options, callback);
 }
 
 }  // namespace
@@ -37,8 +37,8 @@ void bind_similarity(nb::module_& module) {
                            similarity.result.registered ? "registered" : "not registered", similarity.factor);
       });
   module.def("align_similarity", &run, nb::arg("source").noconvert(), nb::arg("target").noconvert(),
-             nb::arg("source_viewpoint").noconvert().none(), nb::arg("target_viewpoint").noconvert().none(),
-             nb::arg("options"), nb::arg("progress").none());
+             nb::arg("source_parts").noconvert(), nb::arg("target_parts").noconvert(), nb::arg("options"),
+             nb::arg("progress").none());
 }
 
 }  // namespace igsp::python

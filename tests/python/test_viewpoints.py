@@ -91,7 +91,7 @@ def test_poses_of_survey_formats(room, tmp_path):
         np.testing.assert_allclose(formats.read_cloud(aligned).viewpoint, (motion(-0.3) @ motion())[:3, 3])
     for name in ("two.ptx", "two.e57"):
         both = formats.read_cloud(tmp_path / name)
-        assert both.viewpoint is None and both.scan_count == 2
+        assert both.viewpoint is None and both.scan_count == 2  # test_parts.py has the rest
         assert igsp.find_viewpoint(tmp_path / name).viewpoint is None and igsp.find_viewpoint(both).viewpoint is None
         np.testing.assert_allclose(formats.read_cloud(tmp_path / name, scan=0).viewpoint, motion()[:3, 3], rtol=1e-12)
     assert formats.read_cloud(two, scan=1).viewpoint is None  # the identity: nobody said anything
@@ -105,4 +105,4 @@ def test_the_command_takes_it_from_them(room, tmp_path, pip_command):
         return subprocess.run([pip_command, "info", tmp_path / name], capture_output=True, text=True, check=True).stdout
 
     assert "at 1250.25 -310.5 12.125: the file says so" in info("one.ptx")
-    assert "unknown: 2 scans in one file" in info("two.ptx")
+    assert "2 scans in one file, all of their viewpoints known" in info("two.ptx")

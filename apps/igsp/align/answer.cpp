@@ -27,13 +27,15 @@ std::string timing_table(const Result& result) {
   return text;
 }
 
+std::string scanner_text(const CloudSummary& cloud) {
+  if (!cloud.part_viewpoints.empty()) return fmt::format("scanner at {} places", cloud.part_viewpoints.size());
+  if (!cloud.viewpoint) return "scanner unknown";
+  return fmt::format("scanner at {:.6g}", fmt::join(cloud.viewpoint->begin(), cloud.viewpoint->end(), ", "));
+}
+
 std::string cloud_line(std::string_view name, const CloudSummary& cloud) {
-  const auto coordinates = [](const Eigen::Vector3d& at) {
-    return fmt::format("{:.6g}", fmt::join(at.begin(), at.end(), ", "));
-  };
-  std::string text =
-      fmt::format("{:<11} {} points, {} voxels, {} keypoints, scanner {}\n", name, cloud.points, cloud.voxels,
-                  cloud.keypoints, cloud.viewpoint ? "at " + coordinates(*cloud.viewpoint) : "unknown");
+  std::string text = fmt::format("{:<11} {} points, {} voxels, {} keypoints, {}\n", name, cloud.points, cloud.voxels,
+                                 cloud.keypoints, scanner_text(cloud));
   if (cloud.stray.count > 0) text += fmt::format("{:<11} {}\n", "", stray_text(cloud));
   return text;
 }

@@ -147,7 +147,7 @@ void stream_large_clouds(CloudInput& source, CloudInput& target, const ScaleOpti
   const double fine = choose_voxel_size(source.points, target.points, options) / 4.0;
   const auto filtered = [&](CloudInput& cloud, std::string_view stage) {
     return [&cloud, stage, fine](const ProgressCallback& report) {
-      if (!cloud.whole()) cloud.points = read_centroids(cloud, fine, stage, report);
+      if (!cloud.whole()) take_centroids(cloud, fine, stage, report);
     };
   };
   concurrently(threads, progress, filtered(source, "filter source"), filtered(target, "filter target"));
@@ -159,7 +159,7 @@ void write_outputs(const AlignSettings& settings, const Result& result, const Js
   if (!settings.report.empty()) write_text(settings.report, report_text(report));
   if (!settings.html.empty()) {
     with_memory(fmt::format("{}: not enough memory for the page", settings.html.string()),
-                [&] { write_text(settings.html, report_page(report, source.points, target.points)); });
+                [&] { write_text(settings.html, report_page(report, source.scan(), target.scan())); });
   }
   const bool wanted = !settings.aligned.empty() || !settings.transformation.empty();
   if (!wanted) return;

@@ -36,6 +36,9 @@ void scramble_source(BenchmarkPair& pair, const BenchmarkCase& one, std::uint64_
   for (Eigen::Vector3d& point : pair.source.points) point = pair.motion * point;
   std::optional<Eigen::Vector3d>& viewpoint = pair.source.viewpoint.viewpoint;
   if (viewpoint) viewpoint = pair.motion * *viewpoint;
+  for (ScanPart& part : pair.source.viewpoint.parts) {
+    if (part.viewpoint) part.viewpoint = pair.motion * *part.viewpoint;
+  }
 }
 
 }  // namespace igsp::cli

@@ -44,7 +44,6 @@ Pass pass_over(CloudInput cloud, const Eigen::Vector3d& origin, double voxel_siz
   }
   pass.cloud.dropped = reader.dropped();
   pass.cloud.declared_viewpoint = reader.viewpoint();
-  pass.cloud.scans = reader.scans();
   pass.cloud.noise = reader.noise();
   return pass;
 }

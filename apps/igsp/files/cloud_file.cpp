@@ -61,9 +61,14 @@ std::size_t CloudFile::noise() const {
   return std::visit([](const auto& reader) { return reader.noise(); }, reader_);
 }
 
-std::size_t CloudFile::scans() const {
+std::size_t CloudFile::part() const {
   const ForeignCloud* foreign = std::get_if<ForeignCloud>(&reader_);
-  return foreign ? foreign->scans() : 1;
+  return foreign ? foreign->part() : 0;
+}
+
+std::vector<ScanPart> CloudFile::parts() const {
+  const ForeignCloud* foreign = std::get_if<ForeignCloud>(&reader_);
+  return foreign ? foreign->parts() : std::vector<ScanPart>();
 }
 
 }  // namespace igsp::cli

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "files/foreign_formats.hpp"
 #include "igsp/io.hpp"
@@ -23,10 +24,11 @@ class CloudFile {
   std::string format() const;           ///< for people: "PLY, ascii"
   std::size_t dropped() const;          ///< non-finite points met so far
   std::size_t noise() const;            ///< points of LAS and LAZ left out so far: noise and withheld ones
+  std::size_t part() const;             ///< of which `parts` the latest chunk is
   std::size_t declared_points() const;  ///< 0 where the format or its reader does not say
   // After the last chunk:
   std::optional<Eigen::Vector3d> viewpoint() const;  ///< where the file says that its scanner stood
-  std::size_t scans() const;                         ///< of which the points are, as far as the file says it
+  std::vector<ScanPart> parts() const;               ///< of a file of several scans: what it says of each
 
  private:
   std::variant<PointReader, ForeignCloud> reader_;

@@ -12,6 +12,13 @@
 
 namespace igsp::cli {
 
+/// One of several scans in a file.
+struct FilePart {
+  std::size_t total = 0;   ///< finite points of it in the file
+  std::size_t points = 0;  ///< of them, or of their centroids, those in memory
+  std::optional<Eigen::Vector3d> declared_viewpoint;
+};
+
 /// A cloud as it came from a file.
 struct CloudInput {
   std::filesystem::path path;
@@ -24,10 +31,10 @@ struct CloudInput {
   Bounds bounds;            ///< of all points
   std::optional<Eigen::Vector3d> declared_viewpoint;  ///< what the file says
   double scale = 1.0;                                 ///< that `points` and the viewpoint are multiplied by
-  std::size_t scans = 1;                              ///< in the file
+  std::vector<FilePart> parts;                        ///< of a file of several scans, in the order of the points
   ViewpointFinding viewpoint;                         ///< where the scanner stood; unknown until settle_viewpoint
   bool whole() const { return points.size() == total; }
-  Scan scan() const { return {points, viewpoint.viewpoint}; }
+  Scan scan() const;
 };
 
 /// Reads a cloud in one pass; of one of more than `max_points` a sample is kept that does not depend on their order, so
@@ -36,7 +43,7 @@ struct CloudInput {
 CloudInput read_cloud(const std::filesystem::path& path, std::size_t max_points, std::string_view stage,
                       const ProgressCallback& progress, const ReadOptions& options = {});
 
-/// Multiplies what is in memory; `bounds` and `declared_viewpoint` stay those of the file.
+/// Multiplies what is in memory; `bounds` and declared viewpoints stay those of the file.
 void scale_cloud(CloudInput& cloud, double factor);
 
 /// The same for any cloud, also an empty one or one without extent.
@@ -50,8 +57,8 @@ std::vector<std::string> left_out_of(const CloudInput& cloud);
 /// frame.
 void settle_viewpoint(CloudInput& cloud, const ViewpointRequest& request);
 
-/// Voxel centroids of the whole file, in the file's frame, read in chunks: memory grows with the voxels only.
-Points read_centroids(const CloudInput& cloud, double voxel_size, std::string_view stage,
-                      const ProgressCallback& progress);
+/// Voxel centroids of the whole file, in its frame, in place of the points in memory; of several scans, of each. Read
+/// in chunks: memory grows with the voxels only.
+void take_centroids(CloudInput& cloud, double voxel_size, std::string_view stage, const ProgressCallback& progress);
 
 }  // namespace igsp::cli

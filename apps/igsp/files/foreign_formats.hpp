@@ -16,9 +16,10 @@ struct ForeignCloud {
   ChunkSource next_chunk;
   std::function<std::size_t()> dropped;  ///< non-finite points met so far
   std::function<std::size_t()> noise;    ///< points of LAZ left out so far: classified as noise, or withheld
+  std::function<std::size_t()> part;     ///< of which `parts` the latest chunk is: all of its points, in their order
   // After the last chunk:
   std::function<std::optional<Eigen::Vector3d>()> viewpoint;  ///< where the file says that the scanner stood
-  std::function<std::size_t()> scans;                         ///< how many the points are of
+  std::function<std::vector<ScanPart>()> parts;               ///< of a file of several scans: what it says of each
 };
 
 /// Files that igsp cannot read or write by itself, and who can: the Python package fills this, the plain command has

@@ -42,9 +42,20 @@ double spacing_of(PointView cloud, const Bounds& bounds, double voxel_size) {
   return unit * distances[distances.size() / 2];
 }
 
+std::string place_text(const Eigen::Vector3d& place) {
+  return fmt::format("at {:.10g}", fmt::join(place.begin(), place.end(), " "));
+}
+
 std::string viewpoint_text(const ViewpointFinding& found) {
-  if (!found.viewpoint) return found.reason;
-  return fmt::format("at {:.10g}: {}", fmt::join(found.viewpoint->begin(), found.viewpoint->end(), " "), found.reason);
+  return found.viewpoint ? place_text(*found.viewpoint) + ": " + found.reason : found.reason;
+}
+
+void print_parts(const CloudInput& cloud) {
+  for (std::size_t i = 0; i < cloud.parts.size(); ++i) {
+    const std::optional<Eigen::Vector3d>& place = cloud.viewpoint.parts[i].viewpoint;
+    std::cout << fmt::format("    scan {:<15}{} points, scanner {}\n", i, cloud.parts[i].total,
+                             place ? place_text(*place) : "unknown");
+  }
 }
 
 void print_info(const CloudInput& cloud) {
@@ -69,6 +80,7 @@ void print_info(const CloudInput& cloud) {
   std::cout << fmt::format("  spacing               {:.4g}{}\n", spacing,
                            cloud.whole() ? "" : " (of the points kept in memory)");
   std::cout << fmt::format("  scanner               {}\n", viewpoint_text(cloud.viewpoint));
+  print_parts(cloud);
   std::cout << fmt::format("  suggested voxel size  {:.4g}\n", voxel_size);
 }
 

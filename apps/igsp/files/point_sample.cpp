@@ -38,22 +38,43 @@ bool PointSample::is_in(const Eigen::Vector3d& point) const {
   return halvings_ == 0 || hash_of(without_signed_zeros(point)) >> (hash_bits - halvings_) == 0;
 }
 
-void PointSample::add(PointView chunk) {
+void PointSample::add(PointView chunk, std::size_t part) {
+  sizes_.resize(std::max(sizes_.size(), part + 1));
   seen_ += chunk.size();
   for (const Eigen::Vector3d& point : chunk) {
-    if (is_in(point)) kept_.push_back(point);
+    if (!is_in(point)) continue;
+    kept_.push_back(point);
+    ++sizes_[part];
     if (kept_.size() > limit_) shrink();
   }
+}
+
+// What is left of every scan, behind what is left of those before it.
+template <typename LeaveOut>
+void PointSample::keep_of_each(const LeaveOut& leave_out) {
+  auto from = kept_.begin(), to = kept_.begin();
+  for (std::size_t& size : sizes_) {
+    const auto end = from + static_cast<std::ptrdiff_t>(size);
+    const auto kept_end = leave_out(from, end);
+    size = static_cast<std::size_t>(kept_end - from);
+    to = from == to ? kept_end : std::move(from, kept_end, to);
+    from = end;
+  }
+  kept_.erase(to, kept_.end());
 }
 
 // As far as any order of the same points would at the end, and no further.
 void PointSample::shrink() {
   for (Eigen::Vector3d& point : kept_) point = without_signed_zeros(point);
-  std::ranges::sort(kept_, comes_before);
-  kept_.erase(std::unique(kept_.begin(), kept_.end()), kept_.end());  // not of std::ranges, which Clang 14 cannot read
+  keep_of_each([](auto begin, auto end) {
+    std::sort(begin, end, comes_before);
+    return std::unique(begin, end);  // not of std::ranges, which Clang 14 cannot read
+  });
   while (kept_.size() > limit_ / 2 && halvings_ < hash_bits - 1) {
     ++halvings_;
-    std::erase_if(kept_, [this](const Eigen::Vector3d& point) { return !is_in(point); });
+    keep_of_each([this](auto begin, auto end) {
+      return std::remove_if(begin, end, [this](const Eigen::Vector3d& point) { return !is_in(point); });
+    });
   }
 }
 

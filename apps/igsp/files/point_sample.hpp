@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "igsp/point_cloud.hpp"
 
@@ -9,22 +10,28 @@ namespace igsp::cli {
 
 /// The points of a stream: all of them in their order or, of more than `limit`, a sample of at most half as many that
 /// depends on which points came, not on their order. A point is in the sample if its hash is small enough; equal points
-/// count once, since they share it.
+/// count once, since they share it. Of several scans in one stream each is sampled like that.
 class PointSample {
  public:
   explicit PointSample(std::size_t limit) : limit_(limit) {}
 
-  void add(PointView chunk);
+  /// `part`: of which scan all of the chunk is, from 0; those of one scan come one after the other.
+  void add(PointView chunk, std::size_t part = 0);
 
-  /// A sample is sorted by x, y and z.
+  /// A sample is sorted by x, y and z, scan by scan.
   Points take();
+  /// How many of `take` are of each scan, once it has been called.
+  const std::vector<std::size_t>& part_sizes() const { return sizes_; }
 
  private:
   void shrink();
+  template <typename LeaveOut>
+  void keep_of_each(const LeaveOut& leave_out);
   bool is_in(const Eigen::Vector3d& point) const;
 
   std::size_t limit_, seen_ = 0;
-  int halvings_ = 0;  // a share of 2^-halvings of the different points is kept
+  int halvings_ = 0;                      // a share of 2^-halvings of the different points is kept
+  std::vector<std::size_t> sizes_ = {0};  // of `kept_`, by scan
   Points kept_;
 };
 

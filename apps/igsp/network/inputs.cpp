@@ -172,8 +172,8 @@ Features read_features(const ScanReading& reading, std::size_t scan, const Optio
   CloudInput cloud = read_cloud(file, reading.max_points, stage, progress, reading.read);
   const auto given = reading.viewpoints.find(file);
   settle_viewpoint(cloud, {});
-  if (given != reading.viewpoints.end()) cloud.viewpoint.viewpoint = given->second;
-  if (!cloud.whole()) cloud.points = read_centroids(cloud, options.scale.voxel_size / 4, stage, progress);
+  if (given != reading.viewpoints.end()) cloud.viewpoint = {given->second, "given", ""};
+  if (!cloud.whole()) take_centroids(cloud, options.scale.voxel_size / 4, stage, progress);
   Features features = extract_features(cloud.scan(), options);
   features.cloud_points = cloud.total;
   return features;

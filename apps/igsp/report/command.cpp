@@ -53,6 +53,21 @@ CloudInput read_cloud_of(const ReportSettings& settings, const Json& run, const 
   return cloud;
 }
 
+std::optional<Eigen::Vector3d> place_of(const Json& json) {
+  if (json.is_null()) return std::nullopt;
+  return Eigen::Vector3d(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
+}
+
+// As the run had it.
+void settle_as_in(const Json& run, const std::string& name, CloudInput& cloud) {
+  cloud.viewpoint.viewpoint = place_of(run[name]["viewpoint"]);
+  const Json& parts = run[name]["parts"];
+  if (parts.size() != cloud.parts.size()) return;  // taken for one scan
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    cloud.viewpoint.parts.push_back({cloud.parts[i].points, place_of(parts[i]["viewpoint"])});
+  }
+}
+
 int run_report(const ReportSettings& settings) {
   check_output(settings, "RUN", settings.run);
   check_writable(settings.page);
@@ -60,9 +75,11 @@ int run_report(const ReportSettings& settings) {
   ProgressBar bar(true);
   CloudInput source = read_cloud_of(settings, run, "source", settings.source, bar.callback());
   scale_cloud(source, run["scale"]);
-  const CloudInput target = read_cloud_of(settings, run, "target", settings.target, bar.callback());
+  CloudInput target = read_cloud_of(settings, run, "target", settings.target, bar.callback());
   bar.finish();
-  write_text(settings.page, report_page(run, source.points, target.points));
+  settle_as_in(run, "source", source);
+  settle_as_in(run, "target", target);
+  write_text(settings.page, report_page(run, source.scan(), target.scan()));
   return exit_registered;
 }
 

@@ -29,6 +29,16 @@ Json to_json(const OptionValue& value) {
   return std::visit([](const auto& alternative) { return Json(alternative); }, value);
 }
 
+// Of a cloud that was taken for one scan, nothing.
+Json to_json(const CloudInput& input, const std::vector<ScanPart>& settled) {
+  Json parts = Json::array();
+  for (std::size_t i = 0; i < settled.size(); ++i) {
+    const std::optional<Eigen::Vector3d>& viewpoint = settled[i].viewpoint;
+    parts.push_back({{"points", input.parts[i].total}, {"viewpoint", viewpoint ? row(*viewpoint) : Json(nullptr)}});
+  }
+  return parts;
+}
+
 Json to_json(const CloudInput& input, const CloudSummary& summary) {
   return {{"path", input.path.string()},
           {"points", input.total},
@@ -39,7 +49,8 @@ Json to_json(const CloudInput& input, const CloudSummary& summary) {
           {"stray_points", summary.stray.count},
           {"stray_extents_away", summary.stray.extents_away},
           {"viewpoint", summary.viewpoint ? row(*summary.viewpoint) : Json(nullptr)},
-          {"viewpoint_because", input.viewpoint.reason}};
+          {"viewpoint_because", input.viewpoint.reason},
+          {"parts", to_json(input, input.viewpoint.parts)}};
 }
 
 Json to_json(const std::vector<KeypointMatch>& matches) {

@@ -16,7 +16,7 @@ std::string inside_script(const Json& data) {
   return text;
 }
 
-std::string report_page(const Json& run, PointView source, PointView target) {
+std::string report_page(const Json& run, const Scan& source, const Scan& target) {
   const Json data = {{"run", run}, {"scene", report_scene(run, source, target)}};
   return std::string(report_page_head) + inside_script(data) + std::string(report_page_tail);
 }

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
+#include <vector>
 
 #include "core/parallel.hpp"
 #include "report/seen_through.hpp"
 #include "shell/interrupt.hpp"
 #include "spatial/local_pca.hpp"
 #include "spatial/point_grid.hpp"
-#include "spatial/scale.hpp"
+#include "spatial/trimmed_scan.hpp"
 
 namespace igsp::cli {
 namespace {
@@ -22,17 +22,19 @@ constexpr double reach_in_voxels = 2.5;             // as far as matches may be 
 constexpr std::uint8_t out_of_reach = 255;
 
 struct LocalCloud {
-  Points points;  // relative to the origin
+  Points points;                // relative to the origin
+  std::vector<ScanPart> parts;  // where a viewpoint is known; one, if it is one scan
   Eigen::Vector3d origin;
   Bounds bounds;  // of the points that are drawn
 };
 
-LocalCloud localised(PointView cloud, std::string_view name) {
+LocalCloud localised(const Scan& scan, std::string_view name) {
   LocalCloud local;
-  const TrimmedCloud trimmed(cloud, name);
-  local.origin = centre_of(trimmed.bounds());
-  local.points.assign(trimmed.points().begin(), trimmed.points().end());
+  const TrimmedScan trimmed(scan, name);
+  local.origin = centre_of(trimmed.cloud.bounds());
+  local.points.assign(trimmed.cloud.points().begin(), trimmed.cloud.points().end());
   for (Eigen::Vector3d& point : local.points) point -= local.origin;
+  local.parts = trimmed.parts;
   local.bounds = bounds_of(local.points, name);
   return local;
 }
@@ -132,34 +134,38 @@ class SeenThrough {
  public:
   SeenThrough(const Json& run, const LocalCloud& source, const LocalCloud& target)
       : threads_(run["options"]["threads"].get<int>()),
-        source_(image_of(run, "source", source)),
-        target_(image_of(run, "target", target)) {}
+        source_(images_of(source, run["voxel_size"].get<double>())),
+        target_(images_of(target, run["voxel_size"].get<double>())) {}
 
   /// For each cloud the points that contradict the pose, null where nothing is known.
   Json contradicting(const Points& source, const Points& target, const Transformation& place) const {
-    const auto bytes_of = [&](const Points& points, const std::optional<RangeImage>& scanner, const auto& motion) {
-      return scanner ? Json(base64(seen_through(points, *scanner, motion, threads_))) : Json(nullptr);
+    const auto bytes_of = [&](const Points& points, const std::vector<RangeImage>& seen, const auto& motion) {
+      return seen.empty() ? Json(nullptr) : Json(base64(seen_through(points, seen, motion, threads_)));
     };
     return {{"source", bytes_of(source, target_, place)}, {"target", bytes_of(target, source_, place.inverse())}};
   }
-  bool knows_any() const { return source_ || target_; }
+  bool knows_any() const { return !source_.empty() || !target_.empty(); }
 
  private:
-  static std::optional<RangeImage> image_of(const Json& run, const char* name, const LocalCloud& cloud) {
-    const Json& at = run[name]["viewpoint"];
-    if (at.is_null()) return std::nullopt;
-    const Eigen::Vector3d viewpoint(at[0].get<double>(), at[1].get<double>(), at[2].get<double>());
-    return range_image_of(cloud.points, viewpoint - cloud.origin, run["voxel_size"].get<double>());
+  static std::vector<RangeImage> images_of(const LocalCloud& cloud, double voxel_size) {
+    std::vector<RangeImage> images;
+    std::size_t begin = 0;
+    for (const ScanPart& part : cloud.parts) {
+      const PointView points = PointView(cloud.points).subspan(begin, part.points);
+      begin += points.size();
+      if (part.viewpoint) images.push_back(range_image_of(points, *part.viewpoint - cloud.origin, voxel_size));
+    }
+    return images;
   }
 
   int threads_;
-  std::optional<RangeImage> source_, target_;
+  std::vector<RangeImage> source_, target_;
 };
 
 }  // namespace
 
-Json report_scene(const Json& run, PointView source_points, PointView target_points) {
-  const LocalCloud source = localised(source_points, "source"), target = localised(target_points, "target");
+Json report_scene(const Json& run, const Scan& source_scan, const Scan& target_scan) {
+  const LocalCloud source = localised(source_scan, "source"), target = localised(target_scan, "target");
   const std::vector<Pose> poses = poses_of(run);
   const SeenThrough seen(run, source, target);
   const std::size_t pose_bytes = seen.knows_any() ? 3 : 1;

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _e57_reader, _e57_writer, _las_reader, _las_writer, _mesh, _motion, _pts, _ptx, _vtk
-from ._cloud import Cloud, FormatError, Metadata, MissingPackageError, PathLike, Points, Scan, Selection
+from ._cloud import Cloud, FormatError, Metadata, MissingPackageError, Part, PathLike, Points, Scan, Selection
 
 __all__ = [
     "ChunkReader",
@@ -24,6 +24,7 @@ __all__ = [
     "FormatError",
     "Metadata",
     "MissingPackageError",
+    "Part",
     "Scan",
     "is_supported",
     "is_written",
@@ -94,7 +95,10 @@ class ChunkReader(Iterator[Points]):
         self.metadata = Metadata(_known_extension(path)[1:])
         self.dropped = 0
         """Points met so far that were left out because a coordinate is not finite."""
+        self.part = 0
+        """Of which of `parts` the latest chunk is."""
         self._selection = selection
+        self._counts: dict[int, int] = {}  # of points met so far, by the scan that they are of
         reader = _READERS[_known_extension(path)]
         self._chunks: Iterator[Points] = reader.read(path, selection, self.metadata, points_per_chunk)
 
@@ -105,6 +109,8 @@ class ChunkReader(Iterator[Points]):
                 self.dropped += int(len(points) - np.count_nonzero(finite))
                 points = points[finite]
             if len(points):
+                self._counts[self.metadata.current] = self._counts.get(self.metadata.current, 0) + len(points)
+                self.part = len(self._counts) - 1
                 return points
         raise StopIteration
 
@@ -121,23 +127,28 @@ class ChunkReader(Iterator[Points]):
     @property
     def scan_count(self) -> int:
         """How many scans of the file the points are of, as far as it has been read."""
-        return len(self._scans_read())
+        return len(self._counts)
 
     @property
     def viewpoint(self) -> Points | None:
         """(3,): where the scanner stood in the frame of the points, once the last chunk has been read.
 
-        None if the file does not say it (no pose, or one that moves nothing), and for several scans.
+        None if the file does not say it (no pose, or one that moves nothing), and for several scans: see `parts`.
         """
-        scans = self._scans_read()
-        pose = scans[0].pose if len(scans) == 1 else None
+        return self._viewpoint_of(next(iter(self._counts))) if len(self._counts) == 1 else None
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """Of several scans, what is of each and its viewpoint, once the last chunk has been read; none of a single one."""
+        if len(self._counts) < 2:
+            return ()
+        return tuple(Part(count, self._viewpoint_of(scan)) for scan, count in self._counts.items())
+
+    def _viewpoint_of(self, scan: int) -> Points | None:
+        pose = self.metadata.scans[scan].pose
         if pose is None or (pose == np.eye(4)).all():
             return None
         return pose[:3, 3].copy() if self._selection.apply_pose else np.zeros(3)
-
-    def _scans_read(self) -> list[Scan]:
-        scans = enumerate(self.metadata.scans)
-        return [scan for index, scan in scans if self._selection.includes(index) and scan.point_count > 0]
 
 
 def read_chunks(
@@ -190,6 +201,7 @@ def read_cloud(path: PathLike, *, scan: int | None = None, apply_pose: bool = Tr
         reader.viewpoint,
         reader.scan_count,
         reader.note,
+        reader.parts,
     )
 
 

@@ -65,6 +65,14 @@ class Scan:
     pose: Points | None  # (4, 4), file_from_scan; None if the file gives none
 
 
+@dataclass(frozen=True)
+class Part:
+    """Those points of a cloud that are of one scan: they lie one after the other, parts in the order of the scans."""
+
+    point_count: int
+    viewpoint: Points | None  # (3,): where the scanner stood in the frame of the cloud, if the file says it
+
+
 @dataclass
 class Metadata:
     """What a file says beside its points. Filled as the file is read: complete once its last chunk has been."""
@@ -78,6 +86,7 @@ class Metadata:
     epsg: int | None = None  # its EPSG code, where the file gives one
     noise: int = 0  # LAS: points classified as noise (7, 18) and withheld ones that were left out
     no_return: int = 0  # cells of a scan's grid, or points flagged invalid, that carry no point; left out
+    current: int = 0  # while the file is read: of which of `scans` the latest points are
 
 
 @dataclass(frozen=True)
@@ -89,8 +98,9 @@ class Cloud:
     dropped: int  # points left out because a coordinate is not finite
     metadata: Metadata
     viewpoint: Points | None = None  # (3,): where the scanner stood in the frame of the points, if the file says it
-    scan_count: int = 1  # of which the points are: several have no viewpoint in common
+    scan_count: int = 1  # of which the points are: several have no viewpoint in common, see `parts`
     note: str = ""  # what was left out beside `dropped`, in words
+    parts: tuple[Part, ...] = ()  # of several scans, what is of each and its viewpoint
 
 
 @dataclass(frozen=True)

@@ -40,6 +40,7 @@ def read(path: PathLike, selection: Selection, metadata: Metadata, points_per_ch
             continue
         reader = _ScanReader(libe57, path, index, scan.point_count, _e57_file.point_fields(elements[index]))
         pose = scan.pose if selection.apply_pose else None
+        metadata.current = index
         for points, valid in reader.records(points_per_chunk):
             metadata.no_return += int(len(valid) - np.count_nonzero(valid))
             yield points[valid] if pose is None else _motion.apply(pose, points[valid])

@@ -42,6 +42,7 @@ def read(path: PathLike, selection: Selection, metadata: Metadata, points_per_ch
     with LineReader(path) as reader:
         for index, header in enumerate(_headers(reader)):
             _add_scan(metadata, header)
+            metadata.current = index
             for block in _bodies(reader, header.count, points_per_chunk):
                 if not selection.includes(index):
                     continue
