@@ -243,7 +243,13 @@ class NetworkCommand(unittest.TestCase):
                         half)
         self.refuses(self.scans[0], self.scans[1], "-o", "survey", "--write", str(self.site), code=2,
                      saying="would be overwritten; choose another folder")
-        self.refuses(self.scans[0], self.scans[1], "-o", "survey", "--merged", "all.laz", code=3, saying="all.laz")
+
+    def test_a_merged_las_is_for_the_package_which_is_said_before_the_work(self):
+        for name in ["all.laz", "all.LAS"]:
+            self.refuses(self.scans[0], self.scans[1], "-o", "survey", "--merged", name, code=3,
+                         saying=f"--merged {name}: .{name[4:].lower()} is written by the same command from pip install "
+                                "'igsp[las]'")
+            self.assertFalse((self.folder / "survey").exists())
 
     @staticmethod
     def points_of(path):
