@@ -274,6 +274,14 @@ class NetworkCommand(unittest.TestCase):
         self.assertIn(saying, run.stderr)
         self.assertEqual(run.stderr.count("\n"), 1, run.stderr)
 
+    def test_the_help_names_the_defaults_that_hold(self):
+        self.network(*self.scans[:2], "-o", "survey")
+        options = json.loads((self.folder / "survey/network.json").read_text())
+        said = " ".join(self.network("--help").stdout.split())
+        for name in ["min_unconfirmed_confidence", "min_unconfirmed_matches"]:
+            _, _, text = said.partition(f"--{name.replace('_', '-')} ")
+            self.assertEqual(text.split("; default ")[1].split()[0], str(options[name]))
+
     def test_refusals_name_the_cause(self):
         self.refuses(self.scans[0], "-o", "survey", code=2, saying="a network needs at least two scans")
         self.refuses(self.scans[0], self.scans[0], "-o", "survey", code=2, saying="is given twice")

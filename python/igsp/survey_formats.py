@@ -33,9 +33,7 @@ def writes_points(path: str) -> bool:
     return True
 
 
-def write_points(
-    path: str, next_chunk: Callable[[], Points], offset: tuple[float, float, float], scale: float
-) -> None:
+def write_points(path: str, next_chunk: Callable[[], Points], offset: tuple[float, float, float], scale: float) -> None:
     """Of chunks until one is empty."""
     write_chunks(path, _until_empty(next_chunk), scale=scale, offset=offset)
 

@@ -248,13 +248,15 @@ void add_network_command(CLI::App& app, Command& command) {
       ->type_name("all|auto|FILE");
   network
       ->add_option("--min-unconfirmed-confidence", settings->options.min_unconfirmed_confidence,
-                   wrapped("a link in no loop joins scans only with at least this confidence, in [0.5, 1]; default "
-                           "0.95"))
+                   wrapped(fmt::format(
+                       "a link in no loop joins scans only with at least this confidence, in [0.5, 1]; default {}",
+                       settings->options.min_unconfirmed_confidence)))
       ->type_name("NUMBER");
   network
       ->add_option("--min-unconfirmed-matches", settings->options.min_unconfirmed_matches,
-                   wrapped("... and at least so many agreeing matches, since bare rooms fit each other on few; default "
-                           "30"))
+                   wrapped(fmt::format(
+                       "... and at least so many agreeing matches, since bare rooms fit each other on few; default {}",
+                       settings->options.min_unconfirmed_matches)))
       ->type_name("INTEGER");
   add_read_flags(*network, settings->read);
   network
