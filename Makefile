@@ -4,7 +4,7 @@ jobs := $(shell nproc)
 igsp := build/release/bin/igsp
 demo := build/demo
 
-.PHONY: all build setup demo test deb container docs wheel wheels bench bench-scrambles bench-peers aarch64 compilers profile calibrate paper asan tsan fuzz mutants tidy format install clean
+.PHONY: all build setup demo test deb container docs wheel wheels bench bench-scrambles bench-peers aarch64 compilers coverage profile calibrate paper asan tsan fuzz mutants tidy format install clean
 
 all: build
 
@@ -156,6 +156,17 @@ fuzz:
 mutants_options ?=
 mutants: setup
 	/usr/bin/python3 scripts/mutants.py --jobs $(jobs) $(mutants_options)
+
+# Which lines and branches of library and command the tests run: a summary, and build/coverage/index.html line by line. A
+# part of it: coverage_tests="--tests-regex Verdict".
+coverage_tests ?=
+coverage: setup
+	@scripts/setup.sh $(test_packages) gcovr
+	cmake --preset coverage
+	cmake --build --preset coverage
+	ctest --preset coverage -j $(jobs) $(coverage_tests)
+	gcovr --root . --filter src/ --filter apps/ --filter include/ --exclude '.*_test(ing)?\.[ch]pp' --exclude-throw-branches \
+	  --exclude-unreachable-branches --html-details build/coverage/index.html --print-summary build/coverage
 
 # Likely mistakes by the short list in .clang-tidy: what it finds is an error. Slow; a part of it:
 # tidy_sources='src/io/*.cpp'.

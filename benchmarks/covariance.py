@@ -5,7 +5,11 @@ Prints a row a scene: draws that were registered, median of the normalised squar
 more is too sure), the share of draws inside of the stated 95 % ellipsoid, and how much of the squared error
 is the same in all draws of a scene: a bias, not noise. With --csv the single draws as well.
 
+With --pair a real one in place of the simulated: a draw is a random part of its points, whose noise they carry, and the
+error is that against the pose which all points give, refined from TRUTH; what is wrong with that is not seen.
+
 usage: covariance.py IGSP [--draws 200] [--seeds 10] [--points 40000] [--scenes park,indoor,object] [--dof 6] [--csv FILE]
+                     [--pair SOURCE TARGET TRUTH]
 """
 import argparse
 import csv
@@ -58,23 +62,54 @@ def whitened_error(run, truth, dof):
     return np.linalg.cholesky(information).T @ error_of(run, truth)[used]
 
 
-def errors_of(igsp, scene, seed, arguments, folder):
+def aligned(igsp, dof, folder):
+    """The report on source.ply and target.ply of the folder, registered from initial.txt."""
+    subprocess.run([igsp, "align", "source.ply", "target.ply", "--initial", "initial.txt", "--report", "r.json",
+                    "--quiet", "--threads", "1", "--dof", str(dof)], cwd=folder, stdout=subprocess.DEVNULL, check=False)
+    return json.loads((folder / "r.json").read_text())
+
+
+def errors_of_draws(igsp, clouds, noise, truth, arguments, draws, folder):
+    """(n, dof) of those that were registered."""
+    random = np.random.default_rng(1)
+    errors = []
+    for _ in range(draws):
+        for name, points in zip(("source", "target"), clouds, strict=True):
+            write_ply(folder / f"{name}.ply", drawn(points, arguments.points, noise, random))
+        run = aligned(igsp, arguments.dof, folder)
+        if run["verdict"] == "registered":
+            errors.append(whitened_error(run, truth, arguments.dof))
+    return np.array(errors).reshape(-1, arguments.dof)
+
+
+def errors_of_scene(igsp, scene, seed, arguments, folder):
     subprocess.run([igsp, "simulate", scene, "--seed", str(seed), "--points", str(DENSE * arguments.points), "--noise", "0",
                     "--out", folder], check=True, stdout=subprocess.DEVNULL)
     dense = [read_ply(folder / f"station_{i}.ply") for i in (1, 0)]
     truth = np.loadtxt(folder / "station_1_to_0.txt")
-    random = np.random.default_rng(1)
-    errors = []
-    for _ in range(max(1, arguments.draws // arguments.seeds)):
-        for name, points in zip(("source", "target"), dense, strict=True):
-            write_ply(folder / f"{name}.ply", drawn(points, arguments.points, NOISE[scene], random))
-        subprocess.run([igsp, "align", "source.ply", "target.ply", "--initial", "station_1_to_0.txt", "--report", "r.json",
-                        "--quiet", "--threads", "1", "--dof", str(arguments.dof)], cwd=folder, stdout=subprocess.DEVNULL,
-                       check=False)
-        run = json.loads((folder / "r.json").read_text())
-        if run["verdict"] == "registered":
-            errors.append(whitened_error(run, truth, arguments.dof))
-    return np.array(errors).reshape(-1, arguments.dof)
+    np.savetxt(folder / "initial.txt", truth, fmt="%.17g")
+    return errors_of_draws(igsp, dense, NOISE[scene], truth, arguments, max(1, arguments.draws // arguments.seeds), folder)
+
+
+def errors_of_pair(igsp, paths, arguments, folder):
+    clouds = [read_ply(path) for path in paths[:2]]
+    np.savetxt(folder / "initial.txt", np.loadtxt(paths[2]), fmt="%.17g")
+    for name, points in zip(("source", "target"), clouds, strict=True):
+        write_ply(folder / f"{name}.ply", points)
+    reference = np.array(aligned(igsp, arguments.dof, folder)["target_from_source"])
+    return errors_of_draws(igsp, clouds, 0, reference, arguments, arguments.draws, folder)
+
+
+def errors_by_seed(igsp, scene, arguments):
+    """One array a scene of its kind; of a real pair, one."""
+    found = []
+    for seed in range(1, 1 + (1 if arguments.pair else arguments.seeds)):
+        with tempfile.TemporaryDirectory() as folder:
+            if arguments.pair:
+                found.append(errors_of_pair(igsp, arguments.pair, arguments, Path(folder)))
+            else:
+                found.append(errors_of_scene(igsp, scene, seed, arguments, Path(folder)))
+    return found
 
 
 def main():
@@ -85,17 +120,16 @@ def main():
     parser.add_argument("--points", type=int, default=40000)
     parser.add_argument("--scenes", default="park,indoor,object")
     parser.add_argument("--dof", type=int, default=6, choices=[4, 6])
+    parser.add_argument("--pair", nargs=3, type=Path, metavar=("SOURCE", "TARGET", "TRUTH"), help="a real pair")
     parser.add_argument("--csv", type=Path)
     arguments = parser.parse_args()
     rows = []
     print("| scene | points | registered of | median square / expected | inside 95 % | factor that would make it 95 % "
           "| same in all draws |")
     print("|---|---|---|---|---|---|---|")
-    for scene in arguments.scenes.split(","):
-        by_seed = []
-        for seed in range(1, arguments.seeds + 1):
-            with tempfile.TemporaryDirectory() as folder:
-                by_seed.append(errors_of(arguments.igsp.resolve(), scene, seed, arguments, Path(folder)))
+    scenes = [arguments.pair[0].stem] if arguments.pair else arguments.scenes.split(",")
+    for scene in scenes:
+        by_seed = errors_by_seed(arguments.igsp.resolve(), scene, arguments)
         errors = np.concatenate(by_seed)
         same = sum(len(e) * (e.mean(axis=0)**2).sum() for e in by_seed if len(e)) / max(1, len(errors))
         squares = (errors**2).sum(axis=1)

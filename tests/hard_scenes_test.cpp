@@ -72,6 +72,19 @@ TEST(HardScenes, SixteenLinesOfAParkAreRegisteredToAFractionOfAVoxel) {
   }
 }
 
+// Four turns lay it on itself; at one of them the points coincide, and many more matches agree.
+TEST(HardScenes, ALatticeOnItselfIsRefused) {
+  Points lattice;
+  for (int x = 0; x < 40; ++x) {
+    for (int y = 0; y < 30; ++y) {
+      for (int z = 0; z < 20; ++z) lattice.emplace_back(x, y, z);
+    }
+  }
+  const Result result = align(lattice, lattice);
+  EXPECT_FALSE(result.registered) << result.confidence << ": " << result.reason;
+  EXPECT_NE(result.reason.find("ambiguous"), std::string::npos) << result.reason;
+}
+
 TEST(HardScenes, RepetitiveCorridorIsNeverWrong) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     SCOPED_TRACE(seed);

@@ -28,7 +28,7 @@ void move_fixed_records(MoveJob& job, std::uint64_t count, const FixedMotion& mo
   }
   for (const std::uint64_t block = InputFile::buffer_size / motion.read_size(); count > 0;) {
     const std::uint64_t now = std::min(block, count);
-    motion.append(job.file.read(now * motion.read_size()).data(), now, job.transformation, job.bytes);
+    motion.append(job.file, job.file.read(now * motion.read_size()).data(), now, job.transformation, job.bytes);
     job.flush_if_full();
     count -= now;
   }

@@ -98,7 +98,7 @@ void move_compressed(MoveJob& job, const PcdHeader& header, const std::vector<Re
       values[axis] = {fields[i].type,          motion.written[i],  read_offsets[i],
                       size_of(fields[i].type), written_offsets[i], size_of(motion.written[i])};
     }
-    move_values(values, moved.direction, std::endian::little, job.transformation, header.points, read.data(),
+    move_values(job.file, values, moved.direction, std::endian::little, job.transformation, header.points, read.data(),
                 written.data());
   }
   job.bytes += compressed_pcd(written);

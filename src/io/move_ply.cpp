@@ -92,7 +92,8 @@ void move_list_records(MoveJob& job, std::uint64_t count, const std::vector<Reco
         const std::size_t i = moved.fields[axis];
         values[axis] = {fields[i].type, motion.written[i], read_offsets[i], 0, written_offsets[i], 0};
       }
-      move_values(values, moved.direction, byte_order, job.transformation, 1, record.data(), job.bytes.data() + begin);
+      move_values(job.file, values, moved.direction, byte_order, job.transformation, 1, record.data(),
+                  job.bytes.data() + begin);
     }
     job.flush_if_full();
   }

@@ -309,6 +309,19 @@ TEST(MovedCopy, DamagedFilesAreWrittenOrRefused) {
   }
 }
 
+// Found by a fuzzer: out of the range of a float came infinity, and the point was lost for every reader.
+TEST(MovedCopy, WhatAFloatCannotHoldIsRefusedAndLeavesNothing) {
+  const std::string body =
+      "VERSION 0.7\nFIELDS x y z\nSIZE 8 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ";
+  const std::string binary = body + "binary\n" + bytes_of(1e50) + bytes_of(1.0f) + bytes_of(2.0f);
+  for (const std::string& content : {body + "ascii\n1e50 1 2\n", binary}) {
+    const TemporaryFolder folder;
+    const auto source = folder.write("a.pcd", content);
+    EXPECT_THROW(write_moved(source, folder / "b.pcd", quarter_turn()), FileError) << "x becomes y, a float";
+    EXPECT_EQ(folder.files(), 1u);
+  }
+}
+
 TEST(MovedCopy, CancelledLeavesNothing) {
   const TemporaryFolder folder;
   const auto source = folder.write("a.ply", ascii_ply);

@@ -1,7 +1,10 @@
 #include "io/moved_fields.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "io/column_names.hpp"
@@ -54,6 +57,17 @@ Eigen::Vector3d moved(const Eigen::Vector3d& values, bool direction, const Trans
   if (!values.allFinite()) return values;
   if (!direction) return transformation * values;
   return transformation.linear() * values / length_factor(transformation.linear());
+}
+
+void require_held(const InputFile& file, const Eigen::Vector3d& moved, const std::array<ScalarType, 3>& written_as) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double value = moved[static_cast<Eigen::Index>(axis)];
+    const bool is_held = written_as[axis] == ScalarType::float32 ? std::abs(value) <= std::numeric_limits<float>::max()
+                                                                 : std::isfinite(value);
+    if (is_held) continue;
+    file.fail(fmt::format("moved by this transformation a coordinate becomes {}, which its type, {}, cannot hold",
+                          value, written_as[axis] == ScalarType::float32 ? "float" : "double"));
+  }
 }
 
 }  // namespace igsp::io

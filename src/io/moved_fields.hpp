@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "igsp/point_cloud.hpp"
+#include "io/input_file.hpp"
+#include "io/scalar_type.hpp"
 
 namespace igsp::io {
 
@@ -24,5 +26,9 @@ double length_factor(const Eigen::Matrix3d& linear);
 
 /// Where the motion puts them; unchanged where one is not finite.
 Eigen::Vector3d moved(const Eigen::Vector3d& values, bool direction, const Transformation& transformation);
+
+/// Fails where one of the types cannot hold its coordinate of a moved position: out of the range of a float comes
+/// infinity, and readers leave that point out.
+void require_held(const InputFile& file, const Eigen::Vector3d& moved, const std::array<ScalarType, 3>& written_as);
 
 }  // namespace igsp::io

@@ -48,8 +48,9 @@ std::vector<std::string_view> values_of(std::string_view line, const LineMotion&
   return values;
 }
 
-void replace_moved(const std::vector<std::string_view>& values, const MovedFields& fields, const LineMotion& motion,
-                   const Transformation& transformation, std::vector<Replacement>& replacements) {
+void replace_moved(const InputFile& file, const std::vector<std::string_view>& values, const MovedFields& fields,
+                   const LineMotion& motion, const Transformation& transformation,
+                   std::vector<Replacement>& replacements) {
   Eigen::Vector3d before;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t i = fields.fields[axis];
@@ -58,14 +59,18 @@ void replace_moved(const std::vector<std::string_view>& values, const MovedField
     before[static_cast<Eigen::Index>(axis)] = *value;
   }
   const Eigen::Vector3d after = moved(before, fields.direction, transformation);
-  if (!after.allFinite()) return;
+  if (!before.allFinite()) return;
+  const auto written_as = [&](std::size_t axis) {
+    const std::size_t i = fields.fields[axis];
+    return i < motion.written.size() ? motion.written[i] : ScalarType::float64;
+  };
+  if (!fields.direction) require_held(file, after, {written_as(0), written_as(1), written_as(2)});
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto k = static_cast<Eigen::Index>(axis);
     const std::size_t i = fields.fields[axis];
     if (before[k] == after[k]) continue;
-    const ScalarType type = i < motion.written.size() ? motion.written[i] : ScalarType::float64;
     const std::string_view old = motion.table.syntax.quotes ? without_quotes(values[i]) : values[i];
-    replacements.push_back({old, text_of(after[k], type, motion.table.syntax)});
+    replacements.push_back({old, text_of(after[k], written_as(axis), motion.table.syntax)});
   }
 }
 
@@ -77,7 +82,7 @@ void append_moved_line(const InputFile& file, std::string_view line, const LineM
   const std::vector<std::string_view> values = values_of(line, motion);
   std::vector<Replacement> replacements;
   for (const MovedFields& fields : motion.moved) {
-    replace_moved(values, fields, motion, transformation, replacements);
+    replace_moved(file, values, fields, motion, transformation, replacements);
   }
   std::ranges::sort(replacements, {}, [](const Replacement& replacement) { return replacement.old.data(); });
   const char* position = line.data();

@@ -43,7 +43,7 @@ RecordMotion motion_of(const std::vector<RecordField>& fields, bool doubles) {
   return motion;
 }
 
-void move_values(const std::array<MovedValue, 3>& values, bool direction, std::endian byte_order,
+void move_values(const InputFile& file, const std::array<MovedValue, 3>& values, bool direction, std::endian byte_order,
                  const Transformation& transformation, std::uint64_t count, const char* read, char* written) {
   std::array<Decoder, 3> decoders{};
   std::array<Encoder, 3> encoders{};
@@ -51,12 +51,14 @@ void move_values(const std::array<MovedValue, 3>& values, bool direction, std::e
     decoders[axis] = decoder_of(values[axis].read, byte_order);
     encoders[axis] = encoder_of(values[axis].written, byte_order);
   }
+  const std::array<ScalarType, 3> written_as{values[0].written, values[1].written, values[2].written};
   for (std::uint64_t i = 0; i < count; ++i) {
     Eigen::Vector3d before;
     for (int axis = 0; axis < 3; ++axis) {
       before[axis] = decoders[axis](read + values[axis].read_offset + i * values[axis].read_step);
     }
     const Eigen::Vector3d after = moved(before, direction, transformation);
+    if (!direction && before.allFinite()) require_held(file, after, written_as);
     for (int axis = 0; axis < 3; ++axis) {
       const MovedValue& value = values[axis];
       const bool stays = before[axis] == after[axis] || std::isnan(before[axis]);
@@ -97,8 +99,8 @@ FixedMotion::FixedMotion(const std::vector<RecordField>& fields, const RecordMot
   }
 }
 
-void FixedMotion::append(const char* records, std::uint64_t count, const Transformation& transformation,
-                         std::string& bytes) const {
+void FixedMotion::append(const InputFile& file, const char* records, std::uint64_t count,
+                         const Transformation& transformation, std::string& bytes) const {
   const std::size_t begin = bytes.size();
   bytes.resize(begin + count * written_size_);
   char* written = bytes.data() + begin;
@@ -113,7 +115,7 @@ void FixedMotion::append(const char* records, std::uint64_t count, const Transfo
     }
   }
   for (std::size_t i = 0; i < values_.size(); ++i) {
-    move_values(values_[i], directions_[i], byte_order_, transformation, count, records, written);
+    move_values(file, values_[i], directions_[i], byte_order_, transformation, count, records, written);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "igsp/point_cloud.hpp"
+#include "io/input_file.hpp"
 #include "io/moved_fields.hpp"
 #include "io/scalar_type.hpp"
 
@@ -39,8 +40,9 @@ struct MovedValue {
   std::size_t written_offset = 0, written_step = 0;
 };
 
-/// Moves three values in each of `count` records; those that stay keep their bytes where they keep their type.
-void move_values(const std::array<MovedValue, 3>& values, bool direction, std::endian byte_order,
+/// Moves three values in each of `count` records; those that stay keep their bytes where they keep their type. Fails as
+/// `require_held` does.
+void move_values(const InputFile& file, const std::array<MovedValue, 3>& values, bool direction, std::endian byte_order,
                  const Transformation& transformation, std::uint64_t count, const char* read, char* written);
 
 /// Records of one size, one behind the other.
@@ -49,8 +51,9 @@ class FixedMotion {
   FixedMotion(const std::vector<RecordField>& fields, const RecordMotion& motion, std::endian byte_order);
 
   std::size_t read_size() const { return read_size_; }
-  /// Appends `count` moved records.
-  void append(const char* records, std::uint64_t count, const Transformation& transformation, std::string& bytes) const;
+  /// Appends `count` moved records. Fails as `require_held` does.
+  void append(const InputFile& file, const char* records, std::uint64_t count, const Transformation& transformation,
+              std::string& bytes) const;
 
  private:
   struct Run {

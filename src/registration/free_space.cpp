@@ -42,8 +42,8 @@ double FreeSpace::violation() const {
 
 ScannedSpace::ScannedSpace(const Features& features) : features_(features) {
   if (!features.viewpoint) return;
-  seen_.emplace(PointGrid(features.points, on_surface * features.voxel_size),
-                RangeImage(features.fine_points, *features.viewpoint, features.voxel_size));
+  seen_ = Seen{PointGrid(features.points, on_surface * features.voxel_size),
+               RangeImage(features.fine_points, *features.viewpoint, features.voxel_size)};
 }
 
 std::optional<FreeSpaceViolation> ScannedSpace::violation_by(const ScannedSpace& moved,

@@ -77,7 +77,9 @@ Sums sum_up(std::span<const PlanePair> pairs, const Weighted& weighted, double p
     Vector6 jacobian;
     jacobian << place.cross(pair.normal), pair.normal;
     sums.hessian += weight * jacobian * jacobian.transpose();
-    const Eigen::Vector3d cell = (place / patch).array().floor();
+    // All pairs at one place are one patch, of no size.
+    Eigen::Vector3d cell = Eigen::Vector3d::Zero();
+    if (patch > 0) cell = (place / patch).array().floor();
     Patch& at = sums.patches[{static_cast<std::int64_t>(cell.x()), static_cast<std::int64_t>(cell.y()),
                               static_cast<std::int64_t>(cell.z())}];
     at.gradient += weight * pair.residual * jacobian;

@@ -106,5 +106,13 @@ TEST(PoseCovariance, IsEmptyWhereSomethingIsFree) {
   EXPECT_EQ(pose_covariance({}, radius, voxel_size).covariance, Matrix6::Zero());
 }
 
+// Found by a fuzzer: the patches had no size, and their numbers were none.
+TEST(PoseCovariance, OfPairsAtOnePlaceIsNotKnown) {
+  const std::vector<PlanePair> pairs(3, {{1, 2, 3}, Eigen::Vector3d::UnitX(), sigma});
+  const PoseCovariance pose = pose_covariance(pairs, radius, voxel_size);
+  EXPECT_TRUE(pose.information.allFinite());
+  EXPECT_TRUE(pose.covariance.isZero());
+}
+
 }  // namespace
 }  // namespace igsp

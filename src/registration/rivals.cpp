@@ -35,11 +35,12 @@ std::vector<Rival> distinct_rivals(std::span<const Rival> rivals, const Transfor
 }
 
 // Q is the logarithm of the odds that a pose is right.
-double odds_of(std::span<const Rival> rivals, const PoseAssessment& against) {
+double odds_of(std::span<const Rival> rivals, const PoseAssessment& against, double deciding_lead) {
   double odds = 0;
   for (const Rival& rival : rivals) {
-    odds += std::pow(10.0,
-                     std::min(rival.assessment.quality, certain_quality) - std::min(against.quality, certain_quality));
+    const double lead =
+        std::min(against.quality, certain_quality) - std::min(rival.assessment.quality, certain_quality);
+    odds += lead > 0 && lead < deciding_lead ? 1 : std::pow(10.0, -lead);
   }
   return odds;
 }

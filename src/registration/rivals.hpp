@@ -18,8 +18,9 @@ void sort_by_quality(std::vector<Rival>& rivals);  ///< best first
 /// Each once, without those that say the same as `pose` or as an earlier one.
 std::vector<Rival> distinct_rivals(std::span<const Rival> rivals, const Transformation& pose, double voxel_size);
 
-/// Odds that one of the rivals is right, against the pose of this assessment.
-double odds_of(std::span<const Rival> rivals, const PoseAssessment& against);
+/// Odds that one of the rivals is right, against the pose of this assessment; even for each that it leads by less than
+/// so many decades.
+double odds_of(std::span<const Rival> rivals, const PoseAssessment& against, double deciding_lead = 0);
 
 /// What the ranking of another rung says against `pose`: the odds of the poses there that more than chance speaks for,
 /// against the place of `pose` among them. 0 where they hardly weigh: the rung of an answer knows best.

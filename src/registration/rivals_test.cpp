@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace igsp {
 namespace {
 
@@ -26,6 +28,13 @@ TEST(Rivals, OddsAreTheDecadesOfTheirQuality) {
   EXPECT_EQ(odds_of({}, answer), 0);
   // Both are beyond doubt, and which is better is noise.
   EXPECT_DOUBLE_EQ(odds_of(std::vector{at(10, 4)}, at(0, 3).assessment), 1);
+}
+
+TEST(Rivals, ASmallLeadDecidesNothing) {
+  const PoseAssessment answer = at(0, 1).assessment;
+  EXPECT_DOUBLE_EQ(odds_of(std::vector{at(10, 0.5)}, answer, 0.6), 1);
+  EXPECT_DOUBLE_EQ(odds_of(std::vector{at(10, 0)}, answer, 0.6), 0.1);
+  EXPECT_DOUBLE_EQ(odds_of(std::vector{at(10, 1.2)}, answer, 0.6), std::pow(10, 0.2)) << "it is behind";
 }
 
 TEST(Rivals, AreDistinctFromTheAnswerAndFromEachOther) {

@@ -6,6 +6,7 @@
 #include "core/parallel.hpp"
 #include "registration/pose_assessment.hpp"
 #include "registration/precision.hpp"
+#include "registration/self_likeness.hpp"
 #include "registration/surface_contact.hpp"
 
 namespace igsp {
@@ -13,6 +14,10 @@ namespace {
 
 // Of a pose that may look right, where something else says that it is not known or not possible.
 constexpr double confidence_of_what_cannot_be = 0.1;
+
+// Of two poses less apart than this the better one is right no more often than the other: of 10 answers for tables and
+// benches, with half a turn of theirs behind by 0.1 to 0.55 decades, that were registered for it, 5 were right.
+constexpr double deciding_lead = 0.6;  // decades
 
 constexpr double near_quality = 1.5;  // decades below the answer's
 
@@ -58,7 +63,7 @@ std::vector<Rival> rivals_at(ScaleLadder& scales, std::size_t rung, const Search
 }
 
 void weigh(const SearchOutcome& outcome, Judgement& judgement) {
-  judgement.rival_odds = std::max(odds_of(judgement.rivals, judgement.pose), outcome.contradiction);
+  judgement.rival_odds = std::max(odds_of(judgement.rivals, judgement.pose, deciding_lead), outcome.contradiction);
   judgement.confidence = confidence_of(judgement.pose, judgement.rival_odds);
   if (!judgement.free_directions.empty()) {
     judgement.confidence = std::min(judgement.confidence, confidence_of_what_cannot_be);
@@ -87,6 +92,25 @@ void refine_rivals(ScaleLadder& scales, const SearchOutcome& outcome, const Opti
     if (assessment.quality > quality) rival = {pose, assessment}, is_changed = true;
   }
   if (!is_changed) return;
+  sort_by_quality(judgement.rivals);
+  judgement.rivals = distinct_rivals(judgement.rivals, outcome.target_from_source, scales.voxel_size(rung));
+  weigh(outcome, judgement);
+}
+
+// Where the target lies on itself after a turn the source fits as well turned, whether or not a search came across that
+// pose, and whatever the matches say, which see how the clouds are sampled. Only free space may tell them apart.
+void add_turned_rivals(ScaleLadder& scales, const SearchOutcome& outcome, const Options& options,
+                       Judgement& judgement) {
+  constexpr double level = 0.999;  // cosine
+  const std::size_t rung = judgement.rung;
+  for (const Transformation& turn : turns_onto_itself(scales.frame(rung).target())) {
+    if (options.degrees_of_freedom == 4 && turn.linear()(2, 2) < level) continue;
+    const Transformation pose = turn * outcome.target_from_source;
+    Rival rival{pose, assess_pose(scales, rung, pose, scales.threads())};
+    const double told_apart = judgement.pose.free_space_evidence - rival.assessment.free_space_evidence;
+    rival.assessment.quality = std::max(rival.assessment.quality, judgement.pose.quality - std::max(0.0, told_apart));
+    judgement.rivals.push_back(rival);
+  }
   sort_by_quality(judgement.rivals);
   judgement.rivals = distinct_rivals(judgement.rivals, outcome.target_from_source, scales.voxel_size(rung));
   weigh(outcome, judgement);
@@ -152,6 +176,9 @@ Doubts judge(ScaleLadder& scales, const SearchOutcome& outcome, Result& result) 
   Judgement judgement = most_confident(scales, outcome);
   if (judgement.confidence >= 0.5 && result.options.refinement.enabled) {
     refine_rivals(scales, outcome, result.options, judgement);
+  }
+  if (judgement.confidence >= 0.5 && !outcome.ranked.empty()) {
+    add_turned_rivals(scales, outcome, result.options, judgement);
   }
   const bool is_closed_at_v = at_v.geometric_mean() >= overlap_of_closed_surfaces * judgement.pose.overlap();
   if (judgement.confidence >= 0.5 && judgement.rung > outcome.finest_rung && is_closed_at_v) {
