@@ -243,7 +243,13 @@ class NetworkCommand(unittest.TestCase):
                         half)
         self.refuses(self.scans[0], self.scans[1], "-o", "survey", "--write", str(self.site), code=2,
                      saying="would be overwritten; choose another folder")
-        self.refuses(self.scans[0], self.scans[1], "-o", "survey", "--merged", "all.laz", code=3, saying="all.laz")
+
+    def test_a_merged_las_is_for_the_package_which_is_said_before_the_work(self):
+        for name in ["all.laz", "all.LAS"]:
+            self.refuses(self.scans[0], self.scans[1], "-o", "survey", "--merged", name, code=3,
+                         saying=f"--merged {name}: .{name[4:].lower()} is written by the same command from pip install "
+                                "'igsp[las]'")
+            self.assertFalse((self.folder / "survey").exists())
 
     @staticmethod
     def points_of(path):
@@ -267,6 +273,14 @@ class NetworkCommand(unittest.TestCase):
         run = self.network(*arguments, code=code)
         self.assertIn(saying, run.stderr)
         self.assertEqual(run.stderr.count("\n"), 1, run.stderr)
+
+    def test_the_help_names_the_defaults_that_hold(self):
+        self.network(*self.scans[:2], "-o", "survey")
+        options = json.loads((self.folder / "survey/network.json").read_text())
+        said = " ".join(self.network("--help").stdout.split())
+        for name in ["min_unconfirmed_confidence", "min_unconfirmed_matches"]:
+            _, _, text = said.partition(f"--{name.replace('_', '-')} ")
+            self.assertEqual(text.split("; default ")[1].split()[0], str(options[name]))
 
     def test_refusals_name_the_cause(self):
         self.refuses(self.scans[0], "-o", "survey", code=2, saying="a network needs at least two scans")

@@ -91,6 +91,21 @@ cli::ForeignFormats foreign_formats(nb::handle formats) {
           [formats](const fs::path& source, const fs::path& output, const Transformation& motion) {
             in_python([&] { formats.attr("write_aligned")(source.string(), output.string(), array_of(motion)); });
           },
+      .writes_points =
+          [formats](const fs::path& path) {
+            return in_python([&] { return nb::cast<bool>(formats.attr("writes_points")(path.string())); });
+          },
+      .write_points =
+          [formats](const fs::path& path, const ChunkSource& chunks, const cli::PointGrid& grid) {
+            in_python([&] {
+              const nb::object next_chunk = nb::cpp_function([&chunks] {
+                const PointView chunk = chunks();
+                return array_of(Points(chunk.begin(), chunk.end()));
+              });
+              const nb::tuple offset = nb::make_tuple(grid.offset.x(), grid.offset.y(), grid.offset.z());
+              formats.attr("write_points")(path.string(), next_chunk, offset, grid.scale);
+            });
+          },
       .on_interrupt = PyErr_SetInterrupt};
 }
 

@@ -287,3 +287,34 @@ def test_noise_and_withheld_points_are_left_out_unless_asked_for(
     formats.write_aligned(source, aligned, motion())  # which keeps all that the source holds
     assert_same_attributes(laspy.read(aligned), laspy.read(source))
     assert formats.read_cloud(aligned).metadata.noise == 20
+
+
+@pytest.mark.parametrize("name", ["points.las", "points.LAZ"])
+def test_points_alone_in_chunks(tmp_path: Path, name: str) -> None:
+    points = random_points(120_000) + UTM_ORIGIN
+    chunks = (points[start : start + 50_000] for start in range(0, len(points), 50_000))
+    formats.write_chunks(tmp_path / name, chunks, scale=[0.001, 0.001, 0.01], offset=UTM_ORIGIN)
+    cloud = formats.read_cloud(tmp_path / name)
+    assert cloud.format == name[-3:].lower() and cloud.metadata.scale == (0.001, 0.001, 0.01)
+    assert (np.abs(cloud.points - points).max(axis=0) < [0.5001e-3, 0.5001e-3, 0.5001e-2]).all()
+    assert_valid_header(tmp_path / name)
+    assert laspy.open(tmp_path / name).header.point_count == len(points)
+    formats.write_chunks(tmp_path / name, [], scale=0.001)
+    assert len(laspy.read(tmp_path / name)) == 0 and len(formats.read_cloud(tmp_path / name).points) == 0
+
+
+def test_points_that_las_cannot_hold(tmp_path: Path) -> None:
+    far = [np.zeros((3, 3)), [[0, 3e6, 0]]]
+    formats.write_chunks(tmp_path / "a.laz", far, scale=0.002)
+    before = (tmp_path / "a.laz").read_bytes()
+    for chunks in (far, [[[0, np.nan, 0]]], [[[np.inf, 0, 0]]]):
+        with pytest.raises(formats.FormatError, match="32 bits hold no coordinates so far from the offset"):
+            formats.write_chunks(tmp_path / "a.laz", chunks, scale=0.001)
+    for scale in (0, -1, np.nan, [0.1, 0, 0.1], 1e300):
+        with pytest.raises(ValueError, match="scale must be positive"):
+            formats.write_chunks(tmp_path / "a.laz", far, scale=scale)
+    with pytest.raises(ValueError, match="chunk has shape"):
+        formats.write_chunks(tmp_path / "a.laz", [np.zeros((3, 2))], scale=1)
+    with pytest.raises(formats.FormatError, match=r"a\.ply: the name must end in \.las or \.laz"):
+        formats.write_chunks(tmp_path / "a.ply", far, scale=1)
+    assert [path.name for path in tmp_path.iterdir()] == ["a.laz"] and (tmp_path / "a.laz").read_bytes() == before

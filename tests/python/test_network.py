@@ -3,10 +3,12 @@
 import csv
 import pickle
 import subprocess
+import sys
 
+import laspy
 import numpy as np
 import pytest
-from formats_testing import e57_attributes, make_e57, motion, ptx_text
+from formats_testing import UTM_ORIGIN, e57_attributes, make_e57, make_las, motion, ptx_text
 from test_portable import values
 
 import igsp
@@ -105,6 +107,36 @@ def test_scans_of_one_file_are_inputs_of_their_own(site, tmp_path, pip_command):
     assert one.scan_count == 1 and len(igsp.read_points(files[0])) > 2 * len(one.points)
     with pytest.raises(ValueError, match="has no scan 3; its scans: 0 to 2"):
         igsp.read_points(f"{files[0]}#3")
+
+
+@pytest.mark.parametrize("name", ["all.laz", "all.las"])
+def test_the_merged_cloud_as_las(site, tmp_path, pip_command, name):
+    files = [str(tmp_path / f"{i}.laz") for i in range(2)]
+    for file, scan in zip(files, site, strict=False):
+        make_las(scan.points + UTM_ORIGIN).write(file)
+    for merged in [name, "all.ply"]:
+        arguments = ["-o", tmp_path / "survey", "--target-points", "3000", "--merged", tmp_path / merged]
+        run = subprocess.run([pip_command, "network", *files, *arguments], capture_output=True, text=True)
+        assert run.returncode == 0, run.stderr
+    merged, expected = igsp.formats.read_cloud(tmp_path / name), igsp.read_points(tmp_path / "all.ply")
+    assert merged.format == name[4:]
+    scale = merged.metadata.scale[0]
+    assert merged.metadata.scale == (scale, scale, scale) and str(scale) in ("0.001", "0.0001")
+    np.testing.assert_allclose(merged.points, expected, rtol=0, atol=0.51 * scale)
+    np.testing.assert_array_equal(laspy.read(tmp_path / name).return_number, 1)
+
+
+def test_a_merged_laz_without_its_package_is_refused_before_the_work(tmp_path):
+    without = (
+        "import sys; sys.modules['lazrs'] = None\n"
+        "sys.argv = ['igsp', 'network', 'a.ply', 'b.ply', '-o', 'survey', '--merged', 'all.laz']\n"
+        "from igsp.__main__ import main; sys.exit(main())"
+    )
+    (tmp_path / "a.ply").touch()
+    (tmp_path / "b.ply").touch()
+    run = subprocess.run([sys.executable, "-c", without], cwd=tmp_path, capture_output=True, text=True)
+    assert run.returncode == 3 and not (tmp_path / "survey").exists()
+    assert run.stderr == "igsp: all.laz: this format needs the package 'lazrs': pip install 'igsp[las]'\n"
 
 
 def test_features_and_clouds_mix(site, answer):

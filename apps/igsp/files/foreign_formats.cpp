@@ -69,6 +69,14 @@ void write_moved_foreign(const fs::path& source, const fs::path& output, const T
   foreign_formats().write_moved(source, output, target_from_source);
 }
 
+bool writes_foreign_points(const fs::path& path) {
+  return foreign_formats().writes_points && foreign_formats().writes_points(path);
+}
+
+void write_foreign_points(const fs::path& path, const ChunkSource& chunks, const PointGrid& grid) {
+  foreign_formats().write_points(path, chunks, grid);
+}
+
 void check_not_foreign(const fs::path& path) {
   const std::string extension = io::extension_of(path);
   static const std::map<std::string, std::string> extras = {{".e57", "[e57]"},  {".ptx", ""},       {".obj", "[mesh]"},

@@ -22,6 +22,12 @@ struct ForeignCloud {
   std::function<std::vector<ScanPart>()> parts;               ///< of a file of several scans: what it says of each
 };
 
+/// How LAS stores a coordinate: offset + scale * an integer of 32 bits.
+struct PointGrid {
+  Eigen::Vector3d offset;
+  double scale;
+};
+
 /// Files that igsp cannot read or write by itself, and who can: the Python package fills this, the plain command has
 /// none of it. All may throw FileError.
 struct ForeignFormats {
@@ -34,6 +40,9 @@ struct ForeignFormats {
   std::function<bool(const std::filesystem::path& source, const std::filesystem::path& output)> moves;
   std::function<void(const std::filesystem::path& source, const std::filesystem::path& output, const Transformation&)>
       write_moved;
+  /// Whether x, y and z alone can be written under this name.
+  std::function<bool(const std::filesystem::path&)> writes_points;
+  std::function<void(const std::filesystem::path&, const ChunkSource&, const PointGrid&)> write_points;
   /// Called in a signal handler when the user asks to stop, so that what runs here does; may be null.
   void (*on_interrupt)() = nullptr;
 };
@@ -56,6 +65,11 @@ std::vector<std::filesystem::path> scans_in(const std::filesystem::path& path);
 std::filesystem::path file_of_scan(const std::filesystem::path& scan);
 void write_moved_foreign(const std::filesystem::path& source, const std::filesystem::path& output,
                          const Transformation& target_from_source);
+
+/// Whether they write x, y and z alone under this name; igsp itself does so as PLY, PCD and text.
+bool writes_foreign_points(const std::filesystem::path& path);
+/// Chunk by chunk. Throws FileError.
+void write_foreign_points(const std::filesystem::path& path, const ChunkSource& chunks, const PointGrid& grid);
 
 /// Throws FileError that says where help is, if `path` is of a format that only the Python package reads and writes and
 /// nobody here does.

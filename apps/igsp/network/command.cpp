@@ -145,10 +145,7 @@ int run_network(const NetworkSettings& settings) {
   choose_pairs(options, settings.pairs, reading.files);
   choose_world(options, settings, reading.files);
   if (!settings.moved.empty()) check_moved_scans(settings.moved, reading);
-  if (!settings.merged.empty()) {
-    format_of(settings.merged);
-    check_writable(settings.merged);
-  }
+  if (!settings.merged.empty()) check_merged(settings.merged);
   const std::unique_ptr<Engine> engine = engine_for(settings, reading);
   create_folder(settings.folder);
   ProgressBar bar(!settings.quiet);
@@ -222,8 +219,10 @@ void add_network_command(CLI::App& app, Command& command) {
                            "points; those of other frames in component_1, ... in it"))
       ->type_name("DIR");
   network
-      ->add_option("--merged", settings->merged,
-                   wrapped("one cloud of all scans in the largest frame, a point per half voxel: .ply, .pcd or text"))
+      ->add_option(
+          "--merged", settings->merged,
+          wrapped("one cloud of all scans in the largest frame, a point per half voxel: .ply, .pcd or text; in the "
+                  "command of the Python package .las and .laz as well"))
       ->type_name("FILE");
   network
       ->add_option("--engine", settings->engine,
@@ -249,13 +248,15 @@ void add_network_command(CLI::App& app, Command& command) {
       ->type_name("all|auto|FILE");
   network
       ->add_option("--min-unconfirmed-confidence", settings->options.min_unconfirmed_confidence,
-                   wrapped("a link in no loop joins scans only with at least this confidence, in [0.5, 1]; default "
-                           "0.95"))
+                   wrapped(fmt::format(
+                       "a link in no loop joins scans only with at least this confidence, in [0.5, 1]; default {}",
+                       settings->options.min_unconfirmed_confidence)))
       ->type_name("NUMBER");
   network
       ->add_option("--min-unconfirmed-matches", settings->options.min_unconfirmed_matches,
-                   wrapped("... and at least so many agreeing matches, since bare rooms fit each other on few; default "
-                           "30"))
+                   wrapped(fmt::format(
+                       "... and at least so many agreeing matches, since bare rooms fit each other on few; default {}",
+                       settings->options.min_unconfirmed_matches)))
       ->type_name("INTEGER");
   add_read_flags(*network, settings->read);
   network

@@ -2,12 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "files/cloud_file.hpp"
 #include "files/foreign_formats.hpp"
 #include "files/moved_output.hpp"
+#include "files/output_file.hpp"
 #include "igsp/errors.hpp"
 #include "io/file_format.hpp"
 #include "spatial/voxel_grid.hpp"
@@ -71,6 +76,22 @@ std::optional<Eigen::Vector3d> given_viewpoint(const ScanReading& reading, const
   return given->second;
 }
 
+// Fine beside the spacing, and of numbers that a reader of the header takes in: a power of ten and a multiple of it.
+PointGrid grid_about(const Eigen::Vector3d& origin, double spacing) {
+  constexpr double finest = 2000, round_offset = 1000;  // the spacing in steps, and the offset's multiple
+  static_assert(VoxelFilter::reach * finest + round_offset < std::numeric_limits<std::int32_t>::max());
+  const double scale = std::pow(10.0, std::ceil(std::log10(spacing / finest)));
+  const double multiple = round_offset * scale;
+  return {(origin / multiple).array().round() * multiple, scale};
+}
+
+ChunkSource chunks_of(const Points& points) {
+  return [&points, begin = std::size_t{0}]() mutable {
+    const std::size_t size = std::min(PointReader::default_chunk, points.size() - begin);
+    return PointView(points).subspan(std::exchange(begin, begin + size), size);
+  };
+}
+
 }  // namespace
 
 void check_moved_scans(const fs::path& folder, const ScanReading& reading) {
@@ -115,6 +136,20 @@ std::vector<std::string> write_moved_scans(const fs::path& folder, const Network
   return lines;
 }
 
+void check_merged(const fs::path& path) {
+  if (!writes_foreign_points(path)) {
+    const std::string extension = io::extension_of(path);
+    if (extension == ".las" || extension == ".laz") {
+      throw FileError(fmt::format(
+          "--merged {}: {} is written by the same command from pip install 'igsp[las]'; this one writes .ply, .pcd "
+          "and text",
+          path.string(), extension));
+    }
+    format_of(path);
+  }
+  check_writable(path);
+}
+
 std::size_t write_merged(const fs::path& path, const Network& network, const ScanReading& reading,
                          const ProgressCallback& progress) {
   const double spacing = network.voxel_size / 2;
@@ -138,7 +173,11 @@ std::size_t write_merged(const fs::path& path, const Network& network, const Sca
   }
   Points centroids = filter.centroids();
   for (Eigen::Vector3d& centroid : centroids) centroid += origin;
-  write_points(path, centroids);
+  if (writes_foreign_points(path)) {
+    write_foreign_points(path, chunks_of(centroids), grid_about(origin, spacing));
+  } else {
+    write_points(path, centroids);
+  }
   report(progress, "merge", 1, 1);
   return centroids.size();
 }

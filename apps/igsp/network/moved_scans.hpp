@@ -19,6 +19,9 @@ void check_moved_scans(const std::filesystem::path& folder, const ScanReading& r
 std::vector<std::string> write_moved_scans(const std::filesystem::path& folder, const Network& network,
                                            const ScanReading& reading, const ProgressCallback& progress);
 
+/// Throws FileError unless a merged cloud can be written there: asked before a long run, not after it.
+void check_merged(const std::filesystem::path& path);
+
 /// Writes the scans of the largest component as one cloud: a point per half voxel of the network, read in chunks, so
 /// that memory grows with these alone. Returns their number. Throws as write_moved_scans.
 std::size_t write_merged(const std::filesystem::path& path, const Network& network, const ScanReading& reading,

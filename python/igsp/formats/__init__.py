@@ -9,13 +9,26 @@ What each format keeps and how its poses, scales and coordinate systems are trea
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from types import ModuleType
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _e57_reader, _e57_writer, _las_reader, _las_writer, _mesh, _motion, _pts, _ptx, _vtk
+from ..arrays import points_array
+from . import (
+    _e57_reader,
+    _e57_writer,
+    _las_layout,
+    _las_points,
+    _las_reader,
+    _las_writer,
+    _mesh,
+    _motion,
+    _pts,
+    _ptx,
+    _vtk,
+)
 from ._cloud import Cloud, FormatError, Metadata, MissingPackageError, Part, PathLike, Points, Scan, Selection
 
 __all__ = [
@@ -34,6 +47,7 @@ __all__ = [
     "scan_names",
     "split_name",
     "write_aligned",
+    "write_chunks",
 ]
 
 POINTS_PER_CHUNK = 1_000_000
@@ -246,6 +260,30 @@ def write_aligned(
         raise FormatError(output_path, f"the source is written in its own format: the name must end in {known}")
     source, named = split_name(source_path)
     writer.write_aligned(source, output_path, motion, Selection(named if scan is None else scan, apply_pose))
+
+
+def write_chunks(path: PathLike, chunks: Iterable[ArrayLike], *, scale: ArrayLike, offset: ArrayLike = 0.0) -> None:
+    """Writes points that come in arrays of (N, 3), in memory of the largest of them.
+
+    Args:
+        path: .las or .laz. The points have their coordinates and nothing else; `igsp.write_points` knows other formats.
+            The file appears complete or not at all.
+        chunks: such as `read_chunks` gives.
+        scale: coordinates are rounded to whole multiples of it, one or one an axis, ...
+        offset: ... from here, which is at most 2^31 of them away.
+
+    Raises:
+        FormatError, MissingPackageError: as `read_cloud`, also for coordinates that are too far away or not finite.
+        ValueError: scale or offset is out of range.
+    """
+    if _WRITERS.get(_extension(path)) is not _las_writer:
+        raise FormatError(path, "the name must end in .las or .laz; igsp.write_points writes other formats")
+    steps, origin = (np.broadcast_to(np.asarray(value, np.float64), 3) for value in (scale, offset))
+    if not ((steps > 0) & (steps < _las_layout.LARGEST_COORDINATE)).all():
+        raise ValueError(f"scale must be positive and finite, got {steps}")
+    if not (np.abs(origin) < _las_layout.LARGEST_COORDINATE).all():
+        raise ValueError(f"offset must be finite, got {origin}")
+    _las_points.write_chunks(path, (points_array(chunk, "chunk") for chunk in chunks), steps, origin)
 
 
 def _extension(path: PathLike) -> str:

@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 
 from . import _las_layout, _laz_layout, _motion
 from ._atomic import atomic_output
-from ._cloud import FormatError, PathLike, Points, Selection, require
+from ._cloud import PathLike, Points, Selection
 from ._las_layout import Layout, Record
 from ._las_reader import read_records
+from ._laz_writer import RecordWriter
 
 POINTS_AT_ONCE = 500_000
 COPY_AT_ONCE = 1 << 22
@@ -36,17 +37,10 @@ class Grid:
 def write_aligned(source: PathLike, output: PathLike, target_from_source: Points, selection: Selection) -> None:
     layout = _las_layout.read_layout(source)
     selection.require_scan(source, 1)
-    name = str(output).lower()
-    compress = name.endswith(".laz")
-    if name.endswith(".copc.laz"):
-        raise FormatError(output, "COPC cannot be written: name it .laz, which keeps all but the octree")
-    if compress and layout.point_format in _las_layout.PULSE_DIRECTION:
-        # lazrs 0.8 garbles the wave packets of formats 9 and 10, and LASzip refuses what it makes of 4 and 5.
-        fault = f"point format {layout.point_format} with its waveforms cannot be compressed: name it .las"
-        raise FormatError(output, fault)
+    writer = RecordWriter(output, layout.point_format, layout.record_length)
     grid = _choose_grid(source, layout, target_from_source)
     with open(source, "rb") as file, atomic_output(output) as moved:
-        _Copy(source, layout, grid, target_from_source, file, moved).write(compress)
+        _Copy(source, layout, grid, target_from_source, file, moved).write(writer)
 
 
 def _choose_grid(path: PathLike, layout: Layout, motion: Points) -> Grid:
@@ -82,38 +76,24 @@ class _Copy:
         self.lowest = np.full(3, LARGEST, np.int64)
         self.highest = np.full(3, -LARGEST, np.int64)
 
-    def write(self, compress: bool) -> None:
-        lazrs = require("lazrs", self.path, "las") if compress else None
+    def write(self, writer: RecordWriter) -> None:
         header = bytearray(self.layout.header)
-        laszip = lazrs.LazVlr.new_for_compression(self.layout.point_format, self._extra_bytes()) if lazrs else None
-        records, record_count = self._records(laszip.record_data() if laszip else None)
+        records, record_count = self._records(writer.description)
         self.moved.write(bytes(header) + records)
-        point_format = self.layout.point_format | (_las_layout.COMPRESSED if compress else 0)
-        struct.pack_into("<IIB", header, _las_layout.HEADER_SIZE + 2, self.moved.tell(), record_count, point_format)
-        if lazrs:
-            compressor = lazrs.ParLasZipCompressor(self.moved, laszip)
-            for moved_records in self._moved_records():
-                compressor.compress_many(np.frombuffer(moved_records.tobytes(), np.uint8))
-            compressor.done()
-        else:
-            for moved_records in self._moved_records():
-                self.moved.write(moved_records.tobytes())
+        starts = (self.moved.tell(), record_count, writer.format_byte)
+        struct.pack_into("<IIB", header, _las_layout.HEADER_SIZE + 2, *starts)
+        writer.write(self.moved, self._moved_records())
         self._write_tail(header)
         self._patch_coordinates(header)
         self.moved.seek(0)
         self.moved.write(header)
 
-    def _extra_bytes(self) -> int:
-        """Bytes of a record beyond those of its point format."""
-        return self.layout.record_length - _las_layout.RECORD_LENGTHS[self.layout.point_format]
-
-    def _records(self, laszip: bytes | None) -> tuple[bytes, int]:
+    def _records(self, description: bytes) -> tuple[bytes, int]:
         """The variable length records, with the one that describes the compression if there is any; and their count."""
         kept = [record for record in self.layout.records if not _describes_storage(record)]
         data = [self._bytes(record.start, record.end) for record in kept]
-        if laszip:
-            head = _las_layout.VLR_FULL.pack(0, _laz_layout.USER.encode(), _laz_layout.NUMBER, len(laszip), b"by igsp")
-            data.append(head + laszip)
+        if description:
+            data.append(description)
         end = self.layout.records[-1].end if self.layout.records else len(self.layout.header)
         return b"".join(data) + self._bytes(end, self.layout.points_start), len(data)
 
