@@ -95,9 +95,10 @@ TEST(Decide, DoubtfulLinksDoNotConfirmEachOther) {
   Chain chain(3);
   chain.network.links.push_back(Chain::link(2, 0));
   EXPECT_EQ(Chain(chain).decided().components.size(), 1u);
-  for (const std::size_t wrong : {1, 2}) chain.network.links[wrong].confidence = 0.66;
-  chain.network.links[1].violation = 0.0036;  // as far as half a turn of a corridor came
-  chain.network.links[2].violation = 0.0057;
+  for (const std::size_t wrong : {1, 2}) {
+    chain.network.links[wrong].confidence = 0.66;
+    chain.network.links[wrong].violation = 0.05;
+  }
   const Network network = Chain(chain).decided();
   EXPECT_EQ(network.components, (std::vector<std::vector<std::size_t>>{{0, 1}, {2}}));
   EXPECT_NE(network.links[2].reason.find("no link without such a doubt"), std::string::npos);

@@ -15,10 +15,11 @@ constexpr double pull_floor = 0.1;  // [voxels]
 // What is right within two or three voxels is right; loops are judged by it.
 constexpr double judging_floor = 0.7;  // [voxels]
 
-// Right pairs of whole networks have at most 0.001, wrong ones 0.003 and more (docs/network.md). Up to the first, seen
-// well, nothing speaks against a pair; beyond it a pair does not confirm others like it; beyond the second it needs
-// others to confirm it; beyond the last it is out.
+// Right poses have at most 0.05 and half of them 0.002 (docs/network.md). Up to the first, seen well, nothing speaks
+// against a pair; beyond the second it does not confirm others like it; beyond the third it needs others to confirm it;
+// beyond the last it is out.
 constexpr double clear_violation = 0.002;
+constexpr double doubtful_violation = 0.01;
 constexpr double lonely_violation = 0.06;
 constexpr double forbidden_violation = 0.12;
 constexpr std::size_t least_in_view = 100;
@@ -82,7 +83,7 @@ bool may_be_right(const NetworkLink& link, const NetworkOptions& options) {
 }
 
 bool is_doubtful(const NetworkLink& link) {
-  return link.violation > clear_violation;
+  return link.violation > doubtful_violation;
 }
 
 bool contradicts_free_space(const NetworkLink& link) {
