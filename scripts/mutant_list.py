@@ -107,7 +107,7 @@ MUTANTS = [
     ("registration/exchange.cpp", "scale = 1 / scale;", "", "exchanged: scale"),
     ("registration/verdict.cpp", "overlap_that_is_left * pose.overlap()", "0.0", "coarse at best"),
     ("registration/verdict.cpp", "if (!judgement.free_directions.empty()) {", "if (false) {", "free directions"),
-    ("registration/verdict.cpp", "result.registered = result.confidence >= 0.5", "result.registered = result.confidence >= 0.05", "level of the verdict"),
+    ("registration/align.cpp", "result.registered = result.confidence >= options.level", "result.registered = result.confidence >= 0.5", "level of the verdict"),
     ("registration/verdict.cpp", "result.confidence >= 0.5 && is_of_another_scale", "false && is_of_another_scale", "another scale"),
     # Free space
     ("registration/free_space.cpp", "1 - violation / tolerated", "1 + violation / tolerated", "what is contradicted confirms nothing"),
