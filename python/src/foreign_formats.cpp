@@ -96,7 +96,7 @@ cli::ForeignFormats foreign_formats(nb::handle formats) {
             return in_python([&] { return nb::cast<bool>(formats.attr("writes_points")(path.string())); });
           },
       .write_points =
-          [formats](const fs::path& path, const ChunkSource& chunks, const cli::PointGrid& grid) {
+          [formats](const fs::path& path, const ChunkSource& chunks, const cli::CoordinateGrid& grid) {
             in_python([&] {
               const nb::object next_chunk = nb::cpp_function([&chunks] {
                 const PointView chunk = chunks();

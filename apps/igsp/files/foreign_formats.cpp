@@ -73,7 +73,7 @@ bool writes_foreign_points(const fs::path& path) {
   return foreign_formats().writes_points && foreign_formats().writes_points(path);
 }
 
-void write_foreign_points(const fs::path& path, const ChunkSource& chunks, const PointGrid& grid) {
+void write_foreign_points(const fs::path& path, const ChunkSource& chunks, const CoordinateGrid& grid) {
   foreign_formats().write_points(path, chunks, grid);
 }
 

@@ -23,7 +23,7 @@ struct ForeignCloud {
 };
 
 /// How LAS stores a coordinate: offset + scale * an integer of 32 bits.
-struct PointGrid {
+struct CoordinateGrid {
   Eigen::Vector3d offset;
   double scale;
 };
@@ -42,7 +42,7 @@ struct ForeignFormats {
       write_moved;
   /// Whether x, y and z alone can be written under this name.
   std::function<bool(const std::filesystem::path&)> writes_points;
-  std::function<void(const std::filesystem::path&, const ChunkSource&, const PointGrid&)> write_points;
+  std::function<void(const std::filesystem::path&, const ChunkSource&, const CoordinateGrid&)> write_points;
   /// Called in a signal handler when the user asks to stop, so that what runs here does; may be null.
   void (*on_interrupt)() = nullptr;
 };
@@ -69,7 +69,7 @@ void write_moved_foreign(const std::filesystem::path& source, const std::filesys
 /// Whether they write x, y and z alone under this name; igsp itself does so as PLY, PCD and text.
 bool writes_foreign_points(const std::filesystem::path& path);
 /// Chunk by chunk. Throws FileError.
-void write_foreign_points(const std::filesystem::path& path, const ChunkSource& chunks, const PointGrid& grid);
+void write_foreign_points(const std::filesystem::path& path, const ChunkSource& chunks, const CoordinateGrid& grid);
 
 /// Throws FileError that says where help is, if `path` is of a format that only the Python package reads and writes and
 /// nobody here does.

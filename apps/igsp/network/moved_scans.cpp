@@ -77,7 +77,7 @@ std::optional<Eigen::Vector3d> given_viewpoint(const ScanReading& reading, const
 }
 
 // Fine beside the spacing, and of numbers that a reader of the header takes in: a power of ten and a multiple of it.
-PointGrid grid_about(const Eigen::Vector3d& origin, double spacing) {
+CoordinateGrid grid_about(const Eigen::Vector3d& origin, double spacing) {
   constexpr double finest = 2000, round_offset = 1000;  // the spacing in steps, and the offset's multiple
   static_assert(VoxelFilter::reach * finest + round_offset < std::numeric_limits<std::int32_t>::max());
   const double scale = std::pow(10.0, std::ceil(std::log10(spacing / finest)));
