@@ -97,7 +97,7 @@ MUTANTS = [
     ("registration/rivals.cpp", "1.0 / (1.0 + pose.chance_odds() + rival_odds)", "1.0 / (1.0 + pose.chance_odds())", "rivals"),
     ("registration/rivals.cpp", "odds < undecided ? 0 : odds", "0", "what a finer scale contradicts"),
     ("registration/rivals.cpp", "lead > 0 && lead < deciding_lead", "false", "a small lead decides nothing"),
-    ("registration/self_likeness.cpp", "share_on_itself(cloud, turn, near) >= on_itself", "false", "a cloud that lies on itself"),
+    ("registration/self_likeness.cpp", "share_on_itself(cloud, points, turn, near) < on_itself", "true", "a cloud that lies on itself"),
     ("registration/self_likeness.cpp", "ring[(i + turn) % angles]", "ring[i]", "likeness after a turn"),
     ("registration/verdict.cpp", "judgement.pose.quality - std::max(0.0, told_apart)", "rival.assessment.quality",
      "turned, it fits as well"),

@@ -15,6 +15,7 @@ constexpr int angles = 180;                  // of 2 degrees: a voxel at the rim
 constexpr int least_turn = angles / 12;      // smaller ones are near poses, which the search has seen
 constexpr std::size_t turns_about_axis = 2;  // a third and a half; where more fit, these do as well
 constexpr double roughly_on_itself = 0.8, on_itself = 0.99;  // share of the points, turned
+constexpr double keypoints_on_itself = 0.9;                  // three boxes on a field are few of its points
 constexpr double roughly_near = 2, near = 0.75;              // voxels from the surface
 constexpr double reach = 2;                                  // voxels: sparse surfaces have gaps
 constexpr std::size_t max_points = 1500;
@@ -97,8 +98,7 @@ std::vector<double> likely_turns(const Axis& axis, PointView points) {
 }
 
 // Share of the points, turned, within so many voxels of the surface.
-double share_on_itself(const PreparedCloud& cloud, const Transformation& turn, double voxels) {
-  const Points& points = cloud.features.points;
+double share_on_itself(const PreparedCloud& cloud, PointView points, const Transformation& turn, double voxels) {
   const double v = cloud.features.voxel_size;
   const std::size_t stride = std::max<std::size_t>(1, points.size() / max_points);
   std::size_t looked_at = 0, found = 0;
@@ -106,24 +106,26 @@ double share_on_itself(const PreparedCloud& cloud, const Transformation& turn, d
     ++looked_at;
     const Eigen::Vector3d point = turn * points[i];
     const std::int64_t j = cloud.grid.nearest(point.cast<float>(), static_cast<float>(reach * v));
-    found += j >= 0 && std::abs(cloud.features.normals[j].dot(point - points[j])) < voxels * v;
+    found += j >= 0 && std::abs(cloud.features.normals[j].dot(point - cloud.features.points[j])) < voxels * v;
   }
-  return static_cast<double>(found) / static_cast<double>(looked_at);
+  return looked_at > 0 ? static_cast<double>(found) / static_cast<double>(looked_at) : 1.0;
 }
 
 }  // namespace
 
 std::vector<Transformation> turns_onto_itself(const PreparedCloud& cloud) {
   std::vector<Transformation> found;
-  if (cloud.features.points.empty()) return found;
+  const Points& points = cloud.features.points;
+  if (points.empty()) return found;
   const Surface surface = surface_of(cloud);
   const PointToPlaneOptions settling{max_points, max_points, radii, 0, cloud.features.voxel_size, 6, 1};
-  for (const Axis& axis : principal_axes(cloud.features.points)) {
-    for (const double angle_rad : likely_turns(axis, cloud.features.points)) {
+  for (const Axis& axis : principal_axes(points)) {
+    for (const double angle_rad : likely_turns(axis, points)) {
       Transformation turn = axis.turn(angle_rad);
-      if (share_on_itself(cloud, turn, roughly_near) < roughly_on_itself) continue;
+      if (share_on_itself(cloud, points, turn, roughly_near) < roughly_on_itself) continue;
       turn = refine_point_to_plane(surface, surface, turn, settling);
-      if (share_on_itself(cloud, turn, near) >= on_itself) found.push_back(turn);
+      if (share_on_itself(cloud, points, turn, near) < on_itself) continue;
+      if (share_on_itself(cloud, cloud.keypoints, turn, near) >= keypoints_on_itself) found.push_back(turn);
     }
   }
   return found;

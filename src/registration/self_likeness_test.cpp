@@ -87,6 +87,19 @@ TEST(SelfLikeness, ATableWithALampDoesNot) {
   EXPECT_TRUE(turns_in_degrees(boxes).empty());
 }
 
+// Its box is less than a hundredth of the points, and all that there is to recognise.
+TEST(SelfLikeness, AFieldWithABoxDoesNot) {
+  const Features flat = features_of({{{0, 0, 0}, {4, 3, 0.2}}});
+  EXPECT_FALSE(turns_onto_itself(PreparedCloud(flat)).empty());
+  Features field = flat;
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    field.keypoints.push_back(static_cast<std::uint32_t>(field.points.size()));
+    field.points.push_back(flat.points[0] + 0.2 * flat.normals[0] * (1 + 0.05 * i));
+    field.normals.push_back(flat.normals[0]);
+  }
+  EXPECT_TRUE(turns_onto_itself(PreparedCloud(field)).empty());
+}
+
 TEST(SelfLikeness, NothingDoesNot) {
   EXPECT_TRUE(turns_in_degrees({}).empty());
 }
