@@ -24,8 +24,7 @@ void add_records(const std::array<Coordinate, 3>& xyz, const char* bytes, std::u
 void skip_list(InputFile& file, const BinaryField& field, std::endian byte_order) {
   const std::uint64_t start = file.offset();
   const double length = decoder_of(field.list_length, byte_order)(file.read(size_of(field.list_length)).data());
-  if (length < 0) file.fail_at_offset(start, fmt::format("a list of {} values", length));
-  file.skip(static_cast<std::uint64_t>(length) * size_of(field.type));  // < 2^32 values of at most 8 bytes
+  file.skip(list_length(file, start, length) * size_of(field.type));
 }
 
 /// Passes one record; its coordinates where it has them.
@@ -45,6 +44,12 @@ PointCoordinates read_record(InputFile& file, const ListRecords& records) {
 }
 
 }  // namespace
+
+std::uint64_t list_length(const InputFile& file, std::uint64_t offset, double length) {
+  constexpr double too_long = 0x1p32;  // whose bytes can be counted
+  if (!(length >= 0 && length < too_long)) file.fail_at_offset(offset, fmt::format("a list of {} values", length));
+  return static_cast<std::uint64_t>(length);
+}
 
 void FixedRecords::require_records(const InputFile& file) const {
   file.require_records(remaining, stride, "points");

@@ -60,4 +60,7 @@ struct ColumnRecords {
   void fill(InputFile&, Chunk& chunk);  ///< needs no more of the file; the signature is that of the others
 };
 
+/// The length of a list as a file at this byte says it; fails for what is none, a negative or 2^32 and more.
+std::uint64_t list_length(const InputFile& file, std::uint64_t offset, double length);
+
 }  // namespace igsp::io

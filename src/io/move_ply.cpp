@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "io/binary_records.hpp"
 #include "io/move_bodies.hpp"
 #include "io/number_text.hpp"
 #include "io/ply_header.hpp"
@@ -48,8 +49,7 @@ std::uint64_t read_list_length(InputFile& file, const RecordField& field, std::e
   const std::string_view raw = file.read(size_of(*field.list_length));
   bytes += raw;
   const double length = decoder_of(*field.list_length, byte_order)(raw.data());
-  if (length < 0) file.fail_at_offset(start, fmt::format("a list of {} values", length));
-  const std::uint64_t size = static_cast<std::uint64_t>(length) * size_of(field.type);
+  const std::uint64_t size = list_length(file, start, length) * size_of(field.type);
   file.require_records(1, size, "lists");
   return size;
 }

@@ -122,6 +122,13 @@ TEST(PlyReader, ANegativeListLengthNamesItsByte) {
   expect_unreadable("a.ply", content, {"byte offset " + std::to_string(content.size() - 5), "list"});
 }
 
+// Found by a fuzzer: 2^64 - 1 values, which is no double, times their size.
+TEST(PlyReader, AListLongerThanBytesCanBeCountedNamesItsByte) {
+  const auto content = ply("binary_little_endian", "element face 1\nproperty list uint64 double i\n" + vertex(0),
+                           std::string(8, '\xFF') + "....");
+  expect_unreadable("a.ply", content, {"byte offset " + std::to_string(content.size() - 12), "list"});
+}
+
 TEST(PlyReader, CommentsAndWindowsLineEnds) {
   const std::string header =
       "ply\r\ncomment made by hand\r\nformat binary_little_endian 1.0\r\nobj_info 7\r\nelement vertex 1\r\n"
