@@ -65,6 +65,7 @@ void replace_moved(const InputFile& file, const std::vector<std::string_view>& v
     return i < motion.written.size() ? motion.written[i] : ScalarType::float64;
   };
   if (!fields.direction) require_held(file, after, {written_as(0), written_as(1), written_as(2)});
+  if (!after.allFinite()) return;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto k = static_cast<Eigen::Index>(axis);
     const std::size_t i = fields.fields[axis];

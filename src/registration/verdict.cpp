@@ -101,10 +101,10 @@ void refine_rivals(ScaleLadder& scales, const SearchOutcome& outcome, const Opti
 // pose, and whatever the matches say, which see how the clouds are sampled. Only free space may tell them apart.
 void add_turned_rivals(ScaleLadder& scales, const SearchOutcome& outcome, const Options& options,
                        Judgement& judgement) {
-  constexpr double level = 0.999;  // cosine
+  constexpr double upright = 0.999;  // cosine of the tilt
   const std::size_t rung = judgement.rung;
   for (const Transformation& turn : turns_onto_itself(scales.frame(rung).target())) {
-    if (options.degrees_of_freedom == 4 && turn.linear()(2, 2) < level) continue;
+    if (options.degrees_of_freedom == 4 && turn.linear()(2, 2) < upright) continue;
     const Transformation pose = turn * outcome.target_from_source;
     Rival rival{pose, assess_pose(scales, rung, pose, scales.threads())};
     const double told_apart = judgement.pose.free_space_evidence - rival.assessment.free_space_evidence;
