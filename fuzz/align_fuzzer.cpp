@@ -1,6 +1,8 @@
-// Two clouds, viewpoints and options out of arbitrary bytes: a documented error, or a proper rotation and a verdict.
+// Two clouds, viewpoints, parts and options out of arbitrary bytes: a documented error, or a proper rotation and a
+// verdict.
+#include <algorithm>
 #include <cmath>
-#include <optional>
+#include <vector>
 
 #include "bytes.hpp"
 #include "config/option_list.hpp"
@@ -40,9 +42,24 @@ igsp::Options options_of(Bytes& bytes) {
   return options;
 }
 
-std::optional<Eigen::Vector3d> viewpoint_of(Bytes& bytes) {
-  if (bytes.byte() % 2 == 0) return {};
-  return bytes.point();
+/// Parts, in number and size as the bytes say, the last one mostly with what is left of the points.
+std::vector<igsp::ScanPart> parts_of(std::size_t points, Bytes& bytes) {
+  std::vector<igsp::ScanPart> parts(1 + bytes.byte() % 4);
+  for (igsp::ScanPart& part : parts) {
+    part.points = std::min<std::size_t>(points, bytes.take<std::uint16_t>());
+    if (bytes.byte() % 4 != 0) part.viewpoint = bytes.point();
+    points -= part.points;
+  }
+  if (bytes.byte() != 0) parts.back().points += points;  // otherwise they do not add up: align must refuse that
+  return parts;
+}
+
+/// A scan of these points, seen from nowhere, from one place, or fused of several scans.
+igsp::Scan scan_of(const igsp::Points& points, std::uint8_t kind, Bytes& bytes) {
+  igsp::Scan scan(points);
+  if (kind % 4 == 1) scan.viewpoint = bytes.point();
+  if (kind % 4 == 3) scan.parts = parts_of(points.size(), bytes);
+  return scan;
 }
 
 void check(const igsp::Result& result) {
@@ -60,12 +77,15 @@ void check(const igsp::Result& result) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Bytes bytes(data, size);
   const igsp::Options options = options_of(bytes);
-  const auto source_viewpoint = viewpoint_of(bytes), target_viewpoint = viewpoint_of(bytes);
-  const std::size_t sources = bytes.byte();
-  const igsp::Points source = igsp::fuzzing::cloud(bytes, sources), target = igsp::fuzzing::cloud(bytes, 4096);
+  const std::uint8_t source_kind = bytes.byte(), target_kind = bytes.byte(), sources = bytes.byte(),
+                     targets = bytes.byte();
+  const igsp::Points source_points = igsp::fuzzing::cloud(bytes, sources),
+                     target_points = igsp::fuzzing::cloud(bytes, targets);
+  const igsp::Scan source = scan_of(source_points, source_kind, bytes),
+                   target = scan_of(target_points, target_kind, bytes);
   try {
-    check(igsp::align({source, source_viewpoint}, {target, target_viewpoint}, options));
-    check(igsp::align({source, source_viewpoint}, {source, source_viewpoint}, options));
+    check(igsp::align(source, target, options));
+    check(igsp::align(source, source, options));
   } catch (const igsp::InvalidArgument&) {
   }
   return 0;
