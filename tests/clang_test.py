@@ -1,5 +1,5 @@
-"""Library and command are what Clang accepts, too, with its warnings as errors: nothing is generated, so it takes seconds a
-file. Reported as skipped where Clang is not installed.
+"""Library, command and the tests of both are what Clang accepts, too, with its warnings as errors: nothing is generated, so it
+takes seconds a file. Reported as skipped where Clang is not installed.
 
 usage: clang_test.py BUILD_FOLDER, with its compile_commands.json
 """
@@ -36,10 +36,9 @@ def main():
     if compiler is None:
         print(f"left out: none of {', '.join(COMPILERS)} is installed")
         return 77
-    source_folders = [Path(__file__).resolve().parents[1] / name for name in ("src", "apps")]
+    source_folders = [Path(__file__).resolve().parents[1] / name for name in ("src", "apps", "tests")]
     entries = [entry for entry in json.loads((build / "compile_commands.json").read_text())
-               if not entry["file"].endswith("_test.cpp")
-               and any(folder in Path(entry["file"]).parents for folder in source_folders)]
+               if any(folder in Path(entry["file"]).parents for folder in source_folders)]
     if not entries:
         print(f"{build / 'compile_commands.json'} lists no source of library or command")
         return 1

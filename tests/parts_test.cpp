@@ -91,7 +91,7 @@ TEST_F(Parts, NeitherTheirOrderNorTheThreadsMatter) {
 
 // Far beyond what single precision holds, so that the method computes in another unit.
 TEST_F(Parts, TheUnitOfLengthDoesNotMatter) {
-  const auto& [one, two] = std::tie(stations_[0], stations_[1]);
+  const auto &one = stations_[0], &two = stations_[1];
   const auto violation_in = [&](double unit) {
     Points source = joined(one.points, two.points), target = target_;
     for (Points* points : {&source, &target}) {

@@ -27,11 +27,6 @@ bool looks_numeric(std::string_view value) {
          (!value.empty() && std::string_view("+-.0123456789").find(value[0]) != value.npos);
 }
 
-std::vector<std::string_view> cells_of(std::string_view line, const LineSyntax& syntax) {
-  line = without_brackets(line, syntax);
-  return split(line, syntax.separator ? *syntax.separator : separator_of(line));
-}
-
 /// What was read before the first line of numbers.
 struct Preamble {
   std::vector<std::string> names;            // that hold what was asked for

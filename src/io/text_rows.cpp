@@ -8,15 +8,6 @@
 
 namespace igsp::io {
 
-namespace {
-
-std::vector<std::string_view> cells_of(std::string_view line, const LineSyntax& syntax) {
-  line = without_brackets(line, syntax);
-  return split(line, syntax.separator ? *syntax.separator : separator_of(line));
-}
-
-}  // namespace
-
 RowSource open_text_rows(InputFile& file, const std::vector<std::string>& columns) {
   const TextLayout layout = read_text_layout(file, columns);
   TextTable table{layout.columns, layout.count.value_or(TextTable::until_end), true, layout.syntax};

@@ -75,6 +75,11 @@ std::string_view without_brackets(std::string_view line, const LineSyntax& synta
   return line.substr(first, line.find_last_not_of(" \t]),") + 1 - first);
 }
 
+std::vector<std::string_view> cells_of(std::string_view line, const LineSyntax& syntax) {
+  line = without_brackets(line, syntax);
+  return split(line, syntax.separator ? *syntax.separator : separator_of(line));
+}
+
 std::optional<double> parse_value(std::string_view token, const LineSyntax& syntax) {
   if (syntax.quotes) {
     while (token.starts_with('"') || token.starts_with('\'')) token.remove_prefix(1);

@@ -55,6 +55,9 @@ char separator_of(std::string_view line);
 /// The line without what stands around its values.
 std::string_view without_brackets(std::string_view line, const LineSyntax& syntax);
 
+/// The values of the line, as they stand there.
+std::vector<std::string_view> cells_of(std::string_view line, const LineSyntax& syntax);
+
 /// A value as a number, with a decimal comma and in quotes where the syntax says so.
 std::optional<double> parse_value(std::string_view token, const LineSyntax& syntax);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/percent.hpp"
 #include "registration/precision.hpp"
 
 namespace igsp {
@@ -23,10 +24,6 @@ std::string why_no_estimate(const Result& result) {
     default:
       return "no three correspondences agree on a transformation";
   }
-}
-
-std::string percent(double share) {
-  return share < 0.0995 ? fmt::format("{:.1f} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
 }
 
 // Of each scan, as far as the other one's scanner can tell.

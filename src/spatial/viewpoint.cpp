@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
+#include "core/percent.hpp"
 #include "spatial/hidden_points.hpp"
 
 namespace igsp {
 namespace {
 
 constexpr double most = 0.5;  // hidden from a viewpoint, of the points: it contradicts the cloud
-
-std::string percent(double share) {
-  return fmt::format("{:.0f} %", 100 * share);
-}
 
 ViewpointFinding given(PointView points, const ViewpointRequest& request) {
   const double hidden = hidden_points(points, request.position).share;

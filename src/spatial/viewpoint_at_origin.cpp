@@ -6,6 +6,7 @@
 #include <iterator>
 #include <vector>
 
+#include "core/percent.hpp"
 #include "spatial/hidden_points.hpp"
 
 namespace igsp {
@@ -21,10 +22,6 @@ constexpr std::array resolutions = {180, 90};  // cells to a right angle, the fi
 
 ViewpointFinding unknown(const std::string& why) {
   return {{}, "unknown: the file does not say, and " + why, ""};
-}
-
-std::string percent(double share) {
-  return fmt::format("{:.{}f} %", 100 * share, share < 0.095 ? 1 : 0);
 }
 
 double ratio_of_ranges(PointView points) {

@@ -57,9 +57,7 @@ std::string write_case(const BenchmarkCase& one, const BenchmarkPair& pair, cons
 
 std::size_t export_cases(const std::vector<BenchmarkCase>& cases, const std::optional<std::uint64_t>& seed,
                          const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw FileError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
+  make_folder(folder);
   check_writable(folder / "cases.csv");
   std::string list = csv_line({"name", "group", "source", "target", "truth", "max_rotation_error_deg",
                                "max_translation_error_m", "source_viewpoint", "target_viewpoint"});

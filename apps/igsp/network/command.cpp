@@ -42,13 +42,6 @@ struct NetworkSettings {
   std::shared_ptr<OptionFlags> option_flags;
 };
 
-void create_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw FileError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
-  check_writable(folder / "poses.csv");
-}
-
 ScanReading reading_of(const NetworkSettings& settings) {
   ScanReading reading;
   reading.files = scan_files(settings.scans);
@@ -147,7 +140,8 @@ int run_network(const NetworkSettings& settings) {
   if (!settings.moved.empty()) check_moved_scans(settings.moved, reading);
   if (!settings.merged.empty()) check_merged(settings.merged);
   const std::unique_ptr<Engine> engine = engine_for(settings, reading);
-  create_folder(settings.folder);
+  make_folder(settings.folder);
+  check_writable(settings.folder / "poses.csv");
   ProgressBar bar(!settings.quiet);
   const ProgressCallback progress = bar.callback();
   NetworkStore store(settings.folder / "cache", reading, options.pair, *engine);

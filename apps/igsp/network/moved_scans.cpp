@@ -30,12 +30,6 @@ void report(const ProgressCallback& progress, std::string_view stage, std::size_
   if (progress && !progress({stage, static_cast<double>(done) / static_cast<double>(all)})) throw Cancelled();
 }
 
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw FileError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
-}
-
 // FILE#1 of the file as it has been written so far: its other scans stay as they are.
 fs::path scan_of(const fs::path& file, const fs::path& scan) {
   const std::string name = scan.string();

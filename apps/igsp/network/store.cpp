@@ -24,12 +24,6 @@ Options what_matters(Options options) {
   return options;
 }
 
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw FileError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
-}
-
 // A full disk must not end a run whose answer may still fit: what is not kept is made again.
 template <typename Write>
 void if_possible(const Write& write) {

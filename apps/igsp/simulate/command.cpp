@@ -21,15 +21,9 @@ struct SimulateSettings {
   SimulationOptions options;
 };
 
-void create_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw FileError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
-  check_writable(folder / "station_0.ply");
-}
-
 int run_simulate(const SimulateSettings& settings) {
-  create_folder(settings.folder);
+  make_folder(settings.folder);
+  check_writable(settings.folder / "station_0.ply");
   const std::vector<SimulatedScan> scans = simulate(settings.scene, settings.options);
   const auto file = [&](const std::string& name) { return settings.folder / name; };
   for (std::size_t i = 0; i < scans.size(); ++i) {
