@@ -72,7 +72,9 @@ class Workshop:
         # Laid out as the project itself, so that the compiler cache knows most of the objects.
         self.source, self.build, self.jobs, self.programs = build, build / "build/release", jobs, programs
         copy_sources(self.source)
-        configured = run("cmake", "--preset", "release", "-DIGSP_BUILD_APPS=OFF", "-DIGSP_TEST_PYTHON=OFF", cwd=build)
+        # Every source by itself: a mutant then compiles only its own.
+        configured = run("cmake", "--preset", "release", "-DIGSP_BUILD_APPS=OFF", "-DIGSP_TEST_PYTHON=OFF",
+                         "-DCMAKE_UNITY_BUILD=OFF", cwd=build)
         if configured.returncode:
             sys.exit(configured.stdout + configured.stderr)
 

@@ -1,5 +1,5 @@
-"""Library, command and the tests of both are what Clang accepts, too, with its warnings as errors: nothing is generated, so it
-takes seconds a file. Reported as skipped where Clang is not installed.
+"""All that the build compiles is what Clang accepts, too, with its warnings as errors: nothing is generated, so it takes
+seconds a file. Reported as skipped where Clang is not installed.
 
 usage: clang_test.py BUILD_FOLDER, with its compile_commands.json
 """
@@ -36,12 +36,8 @@ def main():
     if compiler is None:
         print(f"left out: none of {', '.join(COMPILERS)} is installed")
         return 77
-    source_folders = [Path(__file__).resolve().parents[1] / name for name in ("src", "apps", "tests")]
-    entries = [entry for entry in json.loads((build / "compile_commands.json").read_text())
-               if any(folder in Path(entry["file"]).parents for folder in source_folders)]
-    if not entries:
-        print(f"{build / 'compile_commands.json'} lists no source of library or command")
-        return 1
+    entries = json.loads((build / "compile_commands.json").read_text())
+    assert entries
 
     def check(entry):
         return subprocess.run(syntax_check(compiler, entry), cwd=entry["directory"], capture_output=True, text=True, check=False)

@@ -11,6 +11,7 @@
 #include <optional>
 #include <tuple>
 
+#include "core/report_progress.hpp"
 #include "foreign_formats.hpp"
 #include "igsp/align.hpp"
 #include "in_python.hpp"
@@ -109,9 +110,7 @@ class Dask : public cli::Engine {
  private:
   // Valid as long as `progress`.
   static nb::object tick(const ProgressCallback& progress, const char* stage) {
-    return nb::cpp_function([&progress, stage](double done) {
-      if (progress && !progress({stage, done})) throw Cancelled();
-    });
+    return nb::cpp_function([&progress, stage](double done) { report_progress(progress, stage, done); });
   }
 
   nb::object engine_;

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/parallel.hpp"
+#include "core/report_progress.hpp"
 #include "igsp/errors.hpp"
 #include "igsp/progress.hpp"
 
@@ -35,9 +36,6 @@ class RelayedProgress {
   }
   /// Tells `progress` of the other thread until that ends. Throws Cancelled.
   void pass_on(const ProgressCallback& progress) {
-    const auto tell = [&](const std::string& stage, double fraction) {
-      if (progress && !progress({stage, fraction})) throw Cancelled();
-    };
     std::string told;  // the stage that `progress` knows of
     std::unique_lock lock(mutex_);
     while (!ended_.wait_for(lock, std::chrono::milliseconds(50), [this] { return is_ended_; })) {
@@ -46,15 +44,15 @@ class RelayedProgress {
       if (stage.empty()) continue;
       lock.unlock();
       if (told != stage) {
-        if (!told.empty()) tell(told, 1.0);
-        tell(stage, 0.0);
+        if (!told.empty()) report_progress(progress, told, 1.0);
+        report_progress(progress, stage, 0.0);
         told = stage;
       }
-      tell(stage, fraction);
+      report_progress(progress, stage, fraction);
       lock.lock();
     }
     lock.unlock();
-    if (!told.empty()) tell(told, 1.0);
+    if (!told.empty()) report_progress(progress, told, 1.0);
   }
 
  private:

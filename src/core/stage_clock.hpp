@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "igsp/errors.hpp"
+#include "core/report_progress.hpp"
 #include "igsp/progress.hpp"
 
 namespace igsp {
@@ -25,9 +25,7 @@ class StageClock {
     begin_ = Clock::now();
     report(0.0);
   }
-  void report(double fraction) const {
-    if (progress_ && !progress_({stage_, fraction})) throw Cancelled();
-  }
+  void report(double fraction) const { report_progress(progress_, stage_, fraction); }
   void finish() { stop(); }
   const StageTimings& timings() const { return timings_; }  ///< by stage, in the order of their first start
 

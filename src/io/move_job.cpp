@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "igsp/errors.hpp"
+#include "core/report_progress.hpp"
 
 namespace igsp::io {
 
@@ -14,8 +14,7 @@ void MoveJob::flush_if_full() {
 void MoveJob::flush() {
   destination_.write(bytes);
   bytes.clear();
-  const double fraction = static_cast<double>(file.offset()) / static_cast<double>(file.size());
-  if (progress_ && !progress_({"write", std::min(1.0, fraction)})) throw Cancelled();
+  report_progress(progress_, "write", file.offset(), file.size());
 }
 
 void MoveJob::copy_lines_read(const std::function<std::string(std::string_view line)>& edited) {

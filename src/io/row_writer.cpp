@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/report_progress.hpp"
 #include "igsp/errors.hpp"
 #include "io/file_format.hpp"
 #include "io/number_text.hpp"
@@ -25,7 +26,7 @@ struct OutputValue {
   bool coordinate = false;
 };
 
-constexpr std::size_t flush_size = std::size_t{1} << 18;
+constexpr std::size_t block_size = std::size_t{1} << 18;
 
 /// A word, unlike any before: PLY and PCD know no blanks in names.
 std::string word_of(const std::string& name, const std::vector<OutputValue>& before) {
@@ -212,7 +213,7 @@ class RowEncoder {
     }
   }
 
-  bool full() const { return !columns_ && blocks_[0].size() >= flush_size; }
+  bool full() const { return !columns_ && blocks_[0].size() >= block_size; }
 
   std::string take() {
     if (!columns_) return std::exchange(blocks_[0], {});
@@ -246,8 +247,7 @@ void write_rows(AtomicFile& file, RowSource& rows, const RowOutput& output) {
     ++written;
     if (!encoder.full()) continue;
     file.write(encoder.take());
-    const double fraction = static_cast<double>(written) / static_cast<double>(output.count);
-    if (output.progress && !output.progress({"write", std::min(1.0, fraction)})) throw Cancelled();
+    report_progress(output.progress, "write", written, output.count);
   }
   file.write(encoder.take());
   if (written != output.count) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/report_progress.hpp"
 #include "igsp/errors.hpp"
 #include "igsp/network.hpp"
 #include "network/common_scale.hpp"
@@ -20,10 +21,6 @@ void check(const NetworkOptions& options) {
   const double confidence = options.min_unconfirmed_confidence;
   if (confidence >= 0.5 && confidence <= 1) return;
   throw InvalidArgument(fmt::format("min_unconfirmed_confidence is {}; it must be in [0.5, 1]", confidence));
-}
-
-void report(const ProgressCallback& progress, std::string_view stage, double fraction) {
-  if (progress && !progress({stage, fraction})) throw Cancelled();
 }
 
 // What is known of every scan from its features.
@@ -51,7 +48,7 @@ void take(Gathered& gathered, const Features& features, std::size_t i) {
 Gathered gather(FeatureShelf& shelf, std::size_t count, const ProgressCallback& progress) {
   Gathered gathered(count);
   for (std::size_t i = 0; i < count; ++i) {
-    report(progress, "features", static_cast<double>(i) / static_cast<double>(count));
+    report_progress(progress, "features", static_cast<double>(i) / static_cast<double>(count));
     try {
       take(gathered, *shelf.get(i), i);
     } catch (const Cancelled&) {
@@ -60,7 +57,7 @@ Gathered gather(FeatureShelf& shelf, std::size_t count, const ProgressCallback& 
       gathered.scans[i].problem = error.what();
     }
   }
-  report(progress, "features", 1);
+  report_progress(progress, "features", 1);
   return gathered;
 }
 
@@ -90,7 +87,7 @@ Network register_network(std::size_t scans, const FeatureSource& features, const
   Network network;
   network.scans = std::move(gathered.scans);
   network.voxel_size = voxel_size;
-  const auto report_pairs = [&](double done) { report(progress, "pairs", done); };
+  const auto report_pairs = [&](double done) { report_progress(progress, "pairs", done); };
   if (options.pairs == PairRule::automatic) {
     network.links = register_likely_pairs(network, shelf, shapes, options, store, report_pairs);
   } else {
@@ -98,14 +95,14 @@ Network register_network(std::size_t scans, const FeatureSource& features, const
     network.links = register_pairs(all ? all_pairs(network.scans) : listed_pairs(network.scans, options.listed_pairs),
                                    shelf, options.pair, store, report_pairs);
   }
-  report(progress, "pairs", 1);
+  report_progress(progress, "pairs", 1);
   decide(network, shapes, options);
-  report(progress, "network", 0);
+  report_progress(progress, "network", 0);
   const std::vector<bool> placed = move_to_control(network, stations, options);
   if (options.pair.refinement.enabled) refine_jointly(network, shelf, stations, options, placed);
   measure_control(network, stations, options, placed);
   measure_residuals(network, shapes);
-  report(progress, "network", 1);
+  report_progress(progress, "network", 1);
   return network;
 }
 
@@ -128,7 +125,7 @@ Network register_network(std::span<const Scan> scans, const NetworkOptions& opti
   if (options.pair.scale.voxel_size == 0) {
     std::vector<double> own;
     for (std::size_t i = 0; i < scans.size(); ++i) {
-      report(progress, "scale", static_cast<double>(i) / static_cast<double>(scans.size()));
+      report_progress(progress, "scale", static_cast<double>(i) / static_cast<double>(scans.size()));
       try {
         own.push_back(own_voxel_size(scans[i], options.pair.scale));
       } catch (const InvalidArgument&) {

@@ -10,11 +10,11 @@
 namespace igsp {
 namespace {
 
-constexpr double min_length = 8.0;         // voxels
-constexpr double enough_prominence = 6.0;  // of 13 pairs without overlap, two voxel sizes each, one vote is above
-constexpr double same_factor = 0.15;       // of the logarithm: seen in voxels of the same size
-constexpr double farthest = 0.7;           // of the logarithm, from the ratio of the clouds' own voxel sizes
-constexpr double widening = 1.4;           // steps between sizes that are tried around the clouds' own
+constexpr double min_length = 8.0;        // voxels
+constexpr double peak_prominence = 6.0;   // of 13 pairs without overlap, two voxel sizes each, one vote is above
+constexpr double same_factor = 0.15;      // of the logarithm: seen in voxels of the same size
+constexpr double most_ratio_apart = 0.7;  // of the logarithm, from the ratio of the clouds' own voxel sizes
+constexpr double widening = 1.4;          // steps between sizes that are tried around the clouds' own
 
 Points keypoints_of(const Features& features, double factor) {
   Points keypoints;
@@ -34,7 +34,7 @@ std::vector<double> expected_factors(double own_ratio) {
   for (const double factor : {1.0, own_ratio, own_ratio * widening, own_ratio / widening}) {
     const bool seen =
         std::ranges::any_of(factors, [&](double other) { return std::abs(std::log(factor / other)) < same_factor; });
-    const bool too_far = std::abs(std::log(factor / own_ratio)) > farthest;
+    const bool too_far = std::abs(std::log(factor / own_ratio)) > most_ratio_apart;
     if (!seen && !too_far) factors.push_back(factor);
   }
   return factors;
@@ -83,7 +83,7 @@ std::vector<double> voted_factors(const Scan& source, const Scan& target, const 
   for (const double expected : expected_factors(target_size / source_size)) {
     const Features source_features = features_at(moving, target_size / expected);
     const RatioPeak peak = scale_vote(source_features, target_features, expected, options);
-    if (peak.prominence >= enough_prominence) peaks.push_back(peak);
+    if (peak.prominence >= peak_prominence) peaks.push_back(peak);
   }
   std::ranges::stable_sort(peaks, std::greater(), &RatioPeak::prominence);
   std::vector<double> factors;

@@ -17,7 +17,7 @@ constexpr double sensor_height = 1.6;      // a tripod
 constexpr double camera_distance = 5.0;    // range camera from the origin, in radii of the scene
 constexpr double same_surface = 0.02;      // a line of sight may end this share of its length before the point, ...
 constexpr double same_surface_min = 0.15;  // ... or this much [m]: leaves of one clump count as one surface
-constexpr int probe_rays = 600;
+constexpr int visibility_rays = 600;
 constexpr int places_per_station = 24;
 constexpr int restarts = 24;
 
@@ -41,7 +41,7 @@ std::optional<Vector3d> sensor_at(const Scene& scene, double x, double y) {
 
 Points visible_points(const Scene& scene, const Vector3d& sensor) {
   Points points;
-  for (const Vector3d& direction : scan_directions(probe_rays)) {
+  for (const Vector3d& direction : scan_directions(visibility_rays)) {
     const Hit hit = scene.surfaces.first_hit({sensor, direction}, scene.max_range);
     if (hit) points.push_back(sensor + hit.distance * direction);
   }

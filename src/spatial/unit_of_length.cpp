@@ -14,7 +14,7 @@ namespace {
 // with translations, well conditioned.
 constexpr int ordinary_exponent = 10;
 constexpr double voxels_across = 256;  // about what is chosen
-constexpr double max_voxels_across = 1 << 20;
+constexpr double most_voxels_across = 1 << 20;
 constexpr double least_reference = 1e-160;  // its inverse is finite
 constexpr double least_step = 0x1p-80;      // of the coordinates: two that differ, differ by more
 
@@ -27,12 +27,12 @@ double magnitude_of(const Bounds& bounds) {
 double unit_of_length(const Bounds& source, const Bounds& target, double voxel_size) {
   const double side = std::max((source.max - source.min).maxCoeff(), (target.max - target.min).maxCoeff());
   const double expected = voxel_size > 0 ? voxel_size : side / voxels_across;
-  const double reference =
-      std::max({expected, side / max_voxels_across, least_step * std::max(magnitude_of(source), magnitude_of(target))});
+  const double reference = std::max(
+      {expected, side / most_voxels_across, least_step * std::max(magnitude_of(source), magnitude_of(target))});
   if (reference == 0) return 1;
   const int exponent = std::ilogb(std::max(reference, least_reference));
   if (std::abs(exponent) <= ordinary_exponent) return 1;
-  if (voxel_size > 0 && !(side / voxel_size < max_voxels_across)) {
+  if (voxel_size > 0 && !(side / voxel_size < most_voxels_across)) {
     throw InvalidArgument(fmt::format(
         "voxel_size is {}: too small for a cloud of this extent ({}; at most 2^20 voxels across are possible)",
         voxel_size, side));

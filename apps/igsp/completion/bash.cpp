@@ -25,7 +25,7 @@ std::string positional_offer(const CommandDescription& command) {
   return choices.empty() ? "@FILE" : fmt::format("{}", fmt::join(choices, " "));
 }
 
-std::string command_case(const CommandDescription& command) {
+std::string bash_case(const CommandDescription& command) {
   std::map<std::string, std::vector<std::string>> flags_by_offer;
   for (const ArgumentDescription& flag : command.flags) {
     auto& names = flags_by_offer[offer(flag)];
@@ -50,7 +50,7 @@ std::string command_case(const CommandDescription& command) {
 std::string bash_completion(const CommandDescription& program) {
   std::string cases, names;
   for (const CommandDescription& command : program.subcommands) {
-    cases += command_case(command);
+    cases += bash_case(command);
     names += command.name + " ";
   }
   // Bash splits "--flag=value" at the equals sign into three words.

@@ -38,7 +38,7 @@ std::string flag_lines(const ArgumentDescription& flag) {
   return lines;
 }
 
-std::string command_case(const CommandDescription& command) {
+std::string zsh_case(const CommandDescription& command) {
   std::string lines;
   for (const ArgumentDescription& flag : command.flags) lines += flag_lines(flag);
   for (const ArgumentDescription& positional : command.positionals) {
@@ -54,7 +54,7 @@ std::string zsh_completion(const CommandDescription& program) {
   std::string commands, cases, flags;
   for (const CommandDescription& command : program.subcommands) {
     commands += fmt::format("    '{}:{}'\n", command.name, escaped(command.help));
-    cases += command_case(command);
+    cases += zsh_case(command);
   }
   for (const ArgumentDescription& flag : program.flags) flags += flag_lines(flag);
   return fmt::format(R"(#compdef {0}

@@ -1,11 +1,10 @@
 #include "downsample/voxels.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "core/report_progress.hpp"
 #include "files/cloud_file.hpp"
-#include "igsp/errors.hpp"
 #include "spatial/voxel_grid.hpp"
 
 namespace igsp::cli {
@@ -16,11 +15,6 @@ struct Pass {
   CloudInput cloud;
   std::optional<VoxelFilter> filter;
 };
-
-void report(const ProgressCallback& progress, std::string_view stage, std::size_t read, std::size_t all) {
-  const double fraction = all > 0 ? std::min(1.0, static_cast<double>(read) / static_cast<double>(all)) : 0.0;
-  if (progress && !progress({stage, fraction})) throw Cancelled();
-}
 
 Pass pass_over(CloudInput cloud, const Eigen::Vector3d& origin, double voxel_size, bool near_only,
                std::string_view stage, const ProgressCallback& progress) {
@@ -40,7 +34,7 @@ Pass pass_over(CloudInput cloud, const Eigen::Vector3d& origin, double voxel_siz
     if (far) pass.filter.reset();
     if (pass.filter) pass.filter->add(chunk);
     pass.cloud.total += chunk.size();
-    report(progress, stage, pass.cloud.total + reader.dropped(), reader.declared_points());
+    report_progress(progress, stage, pass.cloud.total + reader.dropped(), reader.declared_points());
   }
   pass.cloud.dropped = reader.dropped();
   pass.cloud.declared_viewpoint = reader.viewpoint();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/report_progress.hpp"
 #include "files/cloud_file.hpp"
 #include "files/point_sample.hpp"
 #include "igsp/errors.hpp"
@@ -13,11 +14,6 @@
 
 namespace igsp::cli {
 namespace {
-
-void report(const ProgressCallback& progress, std::string_view stage, std::size_t done, std::size_t all) {
-  const double fraction = all > 0 ? std::min(1.0, static_cast<double>(done) / static_cast<double>(all)) : 0.0;
-  if (progress && !progress({stage, fraction})) throw Cancelled();
-}
 
 constexpr double max_voxels_away = 1 << 18;
 
@@ -64,7 +60,7 @@ CloudInput sample_cloud(const std::filesystem::path& path, std::size_t max_point
     }
     kept.add(chunk, reader.part());
     cloud.total += chunk.size();
-    report(progress, stage, cloud.total + reader.dropped() + reader.noise(), reader.declared_points());
+    report_progress(progress, stage, cloud.total + reader.dropped() + reader.noise(), reader.declared_points());
   }
   cloud.points = kept.take();
   cloud.parts = parts_of(reader.parts(), kept.part_sizes());
@@ -135,7 +131,7 @@ void take_centroids(CloudInput& cloud, double voxel_size, std::string_view stage
   Points near;
   std::size_t read = 0;
   for (PointView chunk = reader.next_chunk(); !chunk.empty(); chunk = reader.next_chunk()) {
-    report(progress, stage, read, cloud.total);
+    report_progress(progress, stage, read, cloud.total);
     read += chunk.size();
     Part& part = parts.at(reader.part());
     near.clear();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/report_progress.hpp"
 #include "files/cloud_file.hpp"
 #include "files/foreign_formats.hpp"
 #include "igsp/errors.hpp"
@@ -41,8 +42,7 @@ void write_coordinates(const CloudInput& source, const fs::path& output, const T
   Points moved;
   std::size_t read = 0;
   const ChunkSource chunks = [&]() -> PointView {
-    const double fraction = static_cast<double>(read) / static_cast<double>(source.total);
-    if (!progress({"write", fraction})) throw Cancelled();
+    report_progress(progress, "write", read, source.total);
     const PointView chunk = reader.next_chunk();
     read += chunk.size();
     moved.assign(chunk.begin(), chunk.end());

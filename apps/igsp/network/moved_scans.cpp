@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "core/report_progress.hpp"
 #include "files/cloud_file.hpp"
 #include "files/foreign_formats.hpp"
 #include "files/moved_output.hpp"
@@ -25,10 +26,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t sample_size = 1000;  // of a scan whose points are only passed on
 
 constexpr double tolerance = 1e-4;  // [voxels]: floats are written where they are as exact
-
-void report(const ProgressCallback& progress, std::string_view stage, std::size_t done, std::size_t all) {
-  if (progress && !progress({stage, static_cast<double>(done) / static_cast<double>(all)})) throw Cancelled();
-}
 
 // FILE#1 of the file as it has been written so far: its other scans stay as they are.
 fs::path scan_of(const fs::path& file, const fs::path& scan) {
@@ -110,7 +107,7 @@ std::vector<std::string> write_moved_scans(const fs::path& folder, const Network
   std::set<fs::path> begun;
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < outputs.size(); ++i) {
-    report(progress, "write", i, outputs.size());
+    report_progress(progress, "write", i, outputs.size());
     if (outputs[i].empty()) continue;
     make_folder(outputs[i].parent_path());
     const bool is_first = begun.insert(outputs[i]).second;
@@ -118,7 +115,7 @@ std::vector<std::string> write_moved_scans(const fs::path& folder, const Network
     check_moved_output(source, outputs[i]);
     const CloudInput cloud = look_at(source, outputs[i], reading, given_viewpoint(reading, reading.files[i]));
     const auto quiet = [&](const Progress&) {
-      report(progress, "write", i, outputs.size());
+      report_progress(progress, "write", i, outputs.size());
       return true;
     };
     for (std::string& line : write_moved_output(cloud, outputs[i], network.scans[i].world_from_scan,
@@ -126,7 +123,7 @@ std::vector<std::string> write_moved_scans(const fs::path& folder, const Network
       lines.push_back(std::move(line));
     }
   }
-  report(progress, "write", 1, 1);
+  report_progress(progress, "write", 1, 1);
   return lines;
 }
 
@@ -156,7 +153,7 @@ std::size_t write_merged(const fs::path& path, const Network& network, const Sca
     const Transformation& world_from_scan = network.scans[scans[k]].world_from_scan;
     CloudFile reader(reading.files[scans[k]], reading.read);
     for (PointView chunk = reader.next_chunk(); !chunk.empty(); chunk = reader.next_chunk()) {
-      report(progress, "merge", k, scans.size());
+      report_progress(progress, "merge", k, scans.size());
       moved.clear();
       for (const Eigen::Vector3d& point : chunk) {
         const Eigen::Vector3d in_world = world_from_scan * point;
@@ -172,7 +169,7 @@ std::size_t write_merged(const fs::path& path, const Network& network, const Sca
   } else {
     write_points(path, centroids);
   }
-  report(progress, "merge", 1, 1);
+  report_progress(progress, "merge", 1, 1);
   return centroids.size();
 }
 
