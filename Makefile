@@ -128,7 +128,7 @@ compilers: setup
 	cmake --preset release
 	cmake --build --preset release --target igsp_app
 	set -e; for each in "g++ -O0" "g++ -O2" "clang++-14 -O2"; do echo "== $$each"; set -- $$each; folder=build/compilers/$$1$$2; \
-	  cmake -S . -B $$folder -G Ninja -DCMAKE_BUILD_TYPE=Release -DIGSP_BUILD_TESTS=OFF -DCMAKE_CXX_COMPILER=$$1 \
+	  cmake -S . -B $$folder -G Ninja -DCMAKE_BUILD_TYPE=Release -DIGSP_BUILD_TESTS=OFF -DCMAKE_UNITY_BUILD=ON -DCMAKE_CXX_COMPILER=$$1 \
 	    -DCMAKE_CXX_FLAGS_RELEASE="$$2 -DNDEBUG" >/dev/null; \
 	  cmake --build $$folder --target igsp_app >/dev/null; \
 	  /usr/bin/python3 scripts/same_bits.py $(igsp) -- $$folder/bin/igsp || true; done
@@ -169,13 +169,13 @@ coverage: setup
 	gcovr --root . --filter src/ --filter apps/ --filter include/ --exclude '.*_test(ing)?\.[ch]pp' --exclude-throw-branches \
 	  --exclude-unreachable-branches --html-details build/coverage/index.html --print-summary build/coverage
 
-# Likely mistakes by the short list in .clang-tidy: what it finds is an error. Slow; a part of it:
-# tidy_sources='src/io/*.cpp'.
-tidy_sources ?= src/*.cpp apps/*.cpp
+# Likely mistakes by the short list in .clang-tidy: what it finds is an error. Slow; a part of it by a regular
+# expression of paths: tidy_sources='src/io/'.
+tidy_sources ?= /(src|apps)/.*(?<!_test)\.cpp$$|/Unity/
 tidy:
 	@scripts/setup.sh clang-tidy-14
 	cmake --preset release
-	git ls-files $(tidy_sources) | grep -v _test.cpp | xargs -P $(jobs) -n 1 clang-tidy-14 -p build/release --quiet
+	run-clang-tidy-14 -p build/release -quiet -j $(jobs) '$(tidy_sources)'
 
 format:
 	@scripts/setup.sh clang-format

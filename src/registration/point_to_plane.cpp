@@ -166,7 +166,7 @@ bool is_solvable(const Solver& solver) {
 
 Eigen::Vector3d Surface::normal(std::size_t i) const {
   if (states_.empty() || states_[i].load(std::memory_order_acquire) == known) return normals_[i];
-  const Eigen::Vector3d normal = local_normal(grid_, points_[i].cast<float>(), normal_radius_);
+  Eigen::Vector3d normal = local_normal(grid_, points_[i].cast<float>(), normal_radius_);
   // Threads that ask at the same time compute the same; one of them keeps it.
   State state = unknown;
   if (states_[i].compare_exchange_strong(state, being_kept)) {

@@ -32,9 +32,9 @@ std::vector<std::uint32_t> counts_inside(PointView cloud, const Bounds& bounds, 
   const Hull hull(cloud, bounds);
   std::vector<std::uint32_t> inside;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    const auto x = static_cast<int>(i) % blocks.x(), row = static_cast<int>(i) / blocks.x();
-    const Eigen::Vector3d centre =
-        bounds.min + block_size * (Eigen::Vector3d(x, row % blocks.y(), row / blocks.y()).array() + 0.5).matrix();
+    const auto row = static_cast<int>(i) / blocks.x();
+    const Eigen::Vector3i block(static_cast<int>(i) % blocks.x(), row % blocks.y(), row / blocks.y());
+    const Eigen::Vector3d centre = bounds.min + block_size * (block.cast<double>().array() + 0.5).matrix();
     if (hull.holds(centre, margin)) inside.push_back(counts[i]);
   }
   return inside;

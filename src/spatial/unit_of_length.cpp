@@ -47,7 +47,7 @@ Points in_unit(PointView points, double unit) {
 }
 
 Eigen::Vector3d in_unit(const Eigen::Vector3d& place, double unit, std::string_view name) {
-  const Eigen::Vector3d scaled = place / unit;
+  Eigen::Vector3d scaled = place / unit;
   if (scaled.allFinite()) return scaled;
   throw InvalidArgument(
       fmt::format("{} is ({}, {}, {}): too far away for clouds of this extent", name, place.x(), place.y(), place.z()));

@@ -58,7 +58,7 @@ void add_flag(CLI::App& command, const Option& option, std::optional<std::string
 }  // namespace
 
 std::shared_ptr<OptionFlags> add_option_flags(CLI::App& command) {
-  const auto flags = std::make_shared<OptionFlags>();
+  auto flags = std::make_shared<OptionFlags>();
   command
       .add_option("--preset", flags->preset,
                   fmt::format("where the options start: {}", fmt::join(preset_names(), " or ")))
