@@ -110,7 +110,7 @@ Features extract_features(const TrimmedScan& scan, const Options& options, const
   clock.start("voxel grid");
   features.voxel_size = choose_voxel_size(trimmed, trimmed, options.scale);
   features.origin = centre_of(bounds);
-  const ScatterFilter filter(cloud, bounds, scatter_density(cloud, bounds), scatter_cell * features.voxel_size);
+  const ScatterFilter filter(cloud, bounds, scattered_noise(cloud, bounds), scatter_cell * features.voxel_size);
   const Points kept = filter.keeps_all() ? Points() : without_scatter(cloud, filter);
   if (!filter.keeps_all()) cloud = kept;
   features.points = local_centroids(cloud, bounds, features.voxel_size);

@@ -47,7 +47,7 @@ Eigen::Matrix4d SimilarityResult::matrix() const {
 
 SimilarityResult align_similarity(const Scan& source, const Scan& target, const Options& options,
                                   const ProgressCallback& progress) {
-  const SimilarityResult as_given = similarity_near(source, target, 1.0, options, progress);
+  SimilarityResult as_given = similarity_near(source, target, 1.0, options, progress);
   if (as_given.result.registered) return as_given;
   std::vector<double> factors = voted_factors(source, target, options, progress);
   if (factors.size() > max_tried) factors.resize(max_tried);

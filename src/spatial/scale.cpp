@@ -27,11 +27,11 @@ struct Occupancy {
 
 // Without the voxels of scattered noise; by linear counting (Whang et al. 1990): n = -M ln(share of empty slots in a
 // map of M).
-Occupancy occupancy(PointView cloud, const Bounds& bounds, double noise_density, double voxel_size) {
+Occupancy occupancy(PointView cloud, const Bounds& bounds, const ScatteredNoise& noise, double voxel_size) {
   constexpr std::size_t slots = std::size_t{1} << 18;
   std::vector<std::uint8_t> map(slots, 0);  // points a slot, at most 2
   const double inverse = 1.0 / voxel_size;
-  const ScatterFilter filter(cloud, bounds, noise_density, scatter_cell * voxel_size);
+  const ScatterFilter filter(cloud, bounds, noise, scatter_cell * voxel_size);
   for (const Eigen::Vector3d& point : cloud) {
     if (!filter.keeps(point)) continue;
     std::uint8_t& count = map[cell_hash((point - bounds.min) * inverse) >> 46];
@@ -53,10 +53,10 @@ double choose_voxel_size(const TrimmedCloud& source, const TrimmedCloud& target,
   const double extent = std::max(source.bounds().diagonal(), target.bounds().diagonal());
   if (extent == 0) throw InvalidArgument("all points coincide in both clouds; set voxel_size to align them");
 
-  double source_noise = 0, target_noise = 0;
+  ScatteredNoise source_noise, target_noise;
   parallel_pair(
-      threads, [&] { source_noise = scatter_density(source.points(), source.bounds()); },
-      [&] { target_noise = scatter_density(target.points(), target.bounds()); });
+      threads, [&] { source_noise = scattered_noise(source.points(), source.bounds()); },
+      [&] { target_noise = scattered_noise(target.points(), target.bounds()); });
   double voxel_size = extent / 200;
   for (int step = 0; step < max_steps; ++step) {
     Occupancy in_source, in_target;

@@ -42,21 +42,26 @@ std::vector<std::uint32_t> counts_inside(PointView cloud, const Bounds& bounds, 
 
 }  // namespace
 
-double scatter_density(PointView cloud, const Bounds& bounds) {
-  const double diagonal = bounds.diagonal(), thin_side = (bounds.max - bounds.min).minCoeff();
-  if (!(thin_side > thinnest * diagonal)) return 0;
-  const double block_size = std::min(diagonal / blocks_across, thin_side / min_layers);
-  std::vector<std::uint32_t> counts = counts_inside(cloud, bounds, block_size);
-  if (counts.size() < min_blocks) return 0;
-  const auto quantile = counts.begin() + static_cast<std::ptrdiff_t>(emptiest * static_cast<double>(counts.size()));
-  std::ranges::nth_element(counts, quantile);
-  return (*quantile + below_the_mean * std::sqrt(*quantile)) / std::pow(block_size, 3);
+double ScatteredNoise::points_in(double other_side) const {
+  // Of a cloud without extent beside its partner the ratio is infinite, and 0 times that is no number.
+  return points == 0 ? 0 : points * std::pow(other_side / side, 3);
 }
 
-ScatterFilter::ScatterFilter(PointView cloud, const Bounds& bounds, double density, double cell_size)
+ScatteredNoise scattered_noise(PointView cloud, const Bounds& bounds) {
+  const double diagonal = bounds.diagonal(), thin_side = (bounds.max - bounds.min).minCoeff();
+  if (!(thin_side > thinnest * diagonal)) return {};
+  const double block_size = std::min(diagonal / blocks_across, thin_side / min_layers);
+  std::vector<std::uint32_t> counts = counts_inside(cloud, bounds, block_size);
+  if (counts.size() < min_blocks) return {};
+  const auto quantile = counts.begin() + static_cast<std::ptrdiff_t>(emptiest * static_cast<double>(counts.size()));
+  std::ranges::nth_element(counts, quantile);
+  return {*quantile + below_the_mean * std::sqrt(*quantile), block_size};
+}
+
+ScatterFilter::ScatterFilter(PointView cloud, const Bounds& bounds, const ScatteredNoise& noise, double cell_size)
     : corner_(bounds.min), inverse_cell_size_(1.0 / cell_size) {
-  const double noise = density * std::pow(cell_size, 3);
-  least_count_ = 1 + static_cast<std::uint32_t>(std::min(noise + sigmas * std::sqrt(noise), 1e9));
+  const double expected = noise.points_in(cell_size);
+  least_count_ = 1 + static_cast<std::uint32_t>(std::min(expected + sigmas * std::sqrt(expected), 1e9));
   if (keeps_all()) return;
   counts_.assign(std::size_t{1} << slot_bits, 0);
   for (const Eigen::Vector3d& point : cloud) ++counts_[slot_of(point)];

@@ -10,17 +10,26 @@ namespace igsp {
 /// Side of the cells that tell surfaces from scattered noise [voxels]: a surface fills about nine voxels of one.
 inline constexpr double scatter_cell = 3.0;
 
-/// The density of noise that is scattered over the convex hull (dust, multipath, artificial outliers) [points per unit
-/// of volume]. Surfaces leave a quarter and more of the hull's blocks empty, noise does not: from the quartile of the
-/// points in a block. 0 for most clouds.
-double scatter_density(PointView cloud, const Bounds& bounds);
+/// Noise that is scattered over the convex hull (dust, multipath, artificial outliers), as so many points in a cube.
+/// None for most clouds.
+struct ScatteredNoise {
+  double points = 0;
+  double side = 1;  ///< of the cube, > 0
 
-/// Tells the points of surfaces from scattered noise: a cell is a surface's if it holds more points than noise of this
-/// density would put there.
+  /// Points that the noise puts into a cube of this side.
+  double points_in(double other_side) const;
+};
+
+/// Surfaces leave a quarter and more of the hull's blocks empty, noise does not: from the quartile of the points in a
+/// block.
+ScatteredNoise scattered_noise(PointView cloud, const Bounds& bounds);
+
+/// Tells the points of surfaces from scattered noise: a cell is a surface's if it holds more points than the noise
+/// would put there.
 class ScatterFilter {
  public:
   /// Counts the cloud's points in cubic cells, where that can make a difference. `cell_size` > 0.
-  ScatterFilter(PointView cloud, const Bounds& bounds, double density, double cell_size);
+  ScatterFilter(PointView cloud, const Bounds& bounds, const ScatteredNoise& noise, double cell_size);
 
   /// No noise to speak of, or so much would go that it is no noise.
   bool keeps_all() const { return least_count_ <= 1; }

@@ -35,7 +35,7 @@ Points together(Points a, const Points& b) {
 
 ScatterFilter filter_of(const Points& cloud, double cell_size) {
   const Bounds bounds = bounds_of(cloud, "cloud");
-  return ScatterFilter(cloud, bounds, scatter_density(cloud, bounds), cell_size);
+  return ScatterFilter(cloud, bounds, scattered_noise(cloud, bounds), cell_size);
 }
 
 TEST(ScatterFilter, SurfacesAloneAreKept) {
@@ -46,10 +46,18 @@ TEST(ScatterFilter, SurfacesAloneAreKept) {
 
 TEST(ScatterFilter, DensityOfTheNoiseIsBounded) {
   const Points cloud = together(two_walls(50000, 1), uniform_in_box(15000, 2));
-  const double density = scatter_density(cloud, bounds_of(cloud, "cloud"));
-  const double truth = 15000 / (side * side * side);
-  EXPECT_GT(density, 0.9 * truth);
-  EXPECT_LT(density, 2.0 * truth);  // a bound: it holds the walls as well
+  const double points = scattered_noise(cloud, bounds_of(cloud, "cloud")).points_in(side);
+  EXPECT_GT(points, 0.9 * 15000);
+  EXPECT_LT(points, 2.0 * 15000);  // a bound: it holds the walls as well
+}
+
+// Beside a partner of ordinary size: the cube of a block is 0 then, and that of the ratio of cell and block infinite.
+TEST(ScatterFilter, ACloudAlmostWithoutExtentIsKept) {
+  for (Points cloud : {two_walls(50000, 1), together(two_walls(50000, 1), uniform_in_box(15000, 2))}) {
+    for (Eigen::Vector3d& point : cloud) point *= 1e-120;
+    EXPECT_FALSE(std::isnan(scattered_noise(cloud, bounds_of(cloud, "cloud")).points_in(1.0)));
+    EXPECT_TRUE(filter_of(cloud, 1.0).keeps_all());
+  }
 }
 
 TEST(ScatterFilter, NoiseGoesAndSurfacesStay) {
