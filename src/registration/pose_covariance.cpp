@@ -96,6 +96,14 @@ bool is_determined(const Matrix6& hessian) {
   return solver.info() == Eigen::Success && solver.vectorD().minCoeff() > 1e-12;
 }
 
+// Column by column: with several of them at a time Eigen adds up in another order on each family of processors.
+Matrix6 solve(const Matrix6& matrix, const Matrix6& right) {
+  const Eigen::LDLT<Matrix6> solver(matrix);
+  Matrix6 result;
+  for (int i = 0; i < 6; ++i) result.col(i) = solver.solve(Vector6(right.col(i)));
+  return result;
+}
+
 // Covariance of the gradient.
 Matrix6 scatter_of(const Sums& sums, double weight_sum, double residual_variance) {
   Matrix6 scatter = Matrix6::Zero();
@@ -126,11 +134,10 @@ PoseCovariance pose_covariance(std::span<const PlanePair> pairs, double radius, 
   result.gradient_covariance = beyond_patches / (result.residual_variance * result.residual_variance) * scatter;
   result.information = result.curvature;
   if (!is_determined(sums.hessian)) return result;
-  const Eigen::LDLT<Matrix6> solver(sums.hessian);
-  const Matrix6 half = solver.solve(scatter);
-  const Matrix6 covariance = solver.solve(half.transpose());
+  const Matrix6 half = solve(sums.hessian, scatter);
+  const Matrix6 covariance = solve(sums.hessian, half.transpose());
   result.covariance = 0.5 * beyond_patches * (covariance + covariance.transpose());
-  result.information = result.covariance.ldlt().solve(Matrix6::Identity());
+  result.information = solve(result.covariance, Matrix6::Identity());
   return result;
 }
 
