@@ -118,7 +118,7 @@ MUTANTS = [
     ("features/features.cpp", "local_centroids(kept, scan.cloud.bounds()", "local_centroids(scan.cloud.points(), scan.cloud.bounds()", "each of several scanners saw its own points alone"),
     ("registration/free_space.hpp", "target_from_source.inverse(), most_looks)", "target_from_source, most_looks)", "direction of the second view"),
     ("registration/free_space.cpp", "(as_little + 1)", "1", "worth by the proposals contradicted as little"),
-    ("registration/free_space.cpp", "on_surface * growth *", "on_surface *", "what is beside a surface grows with the aperture"),
+    ("registration/free_space.cpp", "beside_surface * growth *", "beside_surface *", "what is beside a surface grows with the aperture"),
     ("registration/pose_assessment.cpp", "(pose.contact() - crossing) / (lying - crossing)", "1.0", "free space confirms no crossing surfaces"),
     ("registration/range_image.cpp", " || window.is_a_line()", "", "one scan line is not all about a direction"),
     ("registration/range_image.cpp", "most_growth = 8", "most_growth = 1", "the aperture grows"),

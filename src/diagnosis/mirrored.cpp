@@ -13,14 +13,14 @@ namespace {
 
 // Pairs that would register have votes for the scale 1 at this prominence, nearly all of them, and others seldom.
 constexpr double mirrored_prominence = 5.0;
-constexpr double largest_scale_error = 0.08;  // of the logarithm: a vote is no measurement
+constexpr double largest_vote_error = 0.08;  // of the logarithm: a vote is no measurement
 
 }  // namespace
 
 std::optional<Diagnosis> mirrored(const SearchedPair& pair, const ProgressCallback& progress) {
   const Features image = mirrored_features(pair.source, pair.options);
   const RatioPeak vote = scale_vote(image, pair.target, 1.0, pair.options);
-  if (vote.prominence < mirrored_prominence || std::abs(std::log(vote.factor)) > largest_scale_error)
+  if (vote.prominence < mirrored_prominence || std::abs(std::log(vote.factor)) > largest_vote_error)
     return std::nullopt;
   const Result result = align(image, pair.target, pair.options, progress);
   if (!result.registered) return std::nullopt;

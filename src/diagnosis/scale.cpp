@@ -15,8 +15,8 @@ namespace {
 
 constexpr double least_difference = 0.03;  // of the logarithm: less is no matter of scale
 constexpr double enough_prominence = 8.0;
-constexpr double like_sizes = 2.0;    // beyond that no descriptor finds its like in voxels of one size
-constexpr double same_factor = 0.01;  // of the logarithm, to be called by its name
+constexpr double like_sizes = 2.0;     // beyond that no descriptor finds its like in voxels of one size
+constexpr double named_factor = 0.01;  // of the logarithm, to be called by its name
 
 struct Unit {
   double metres;
@@ -34,7 +34,7 @@ std::string in_units(double factor) {
   for (const Unit& to : units) {
     for (const Unit& from : units) {
       const double between = from.metres / to.metres;
-      if (between != 1 && std::abs(std::log(factor / between)) < same_factor) {
+      if (between != 1 && std::abs(std::log(factor / between)) < named_factor) {
         return fmt::format("; {:.6g} turns {} into {}", between, from.name, to.name);
       }
     }

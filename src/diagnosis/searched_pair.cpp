@@ -6,11 +6,11 @@ namespace igsp {
 namespace {
 
 constexpr int max_proposed = 12, max_refined = 2;
-constexpr std::size_t enough_voxels = 4000;
+constexpr std::size_t enough_to_coarsen = 4000;
 
 Options options_for(const Result& refused) {
   Options options = refused.options;
-  const bool coarser = std::min(refused.source.voxels, refused.target.voxels) >= enough_voxels;
+  const bool coarser = std::min(refused.source.voxels, refused.target.voxels) >= enough_to_coarsen;
   options.scale.voxel_size = (coarser ? 2 : 1) * refused.voxel_size;
   options.hypotheses.max_proposed = std::min(options.hypotheses.max_proposed, max_proposed);
   options.hypotheses.max_refined = std::min(options.hypotheses.max_refined, max_refined);

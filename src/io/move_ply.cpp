@@ -11,10 +11,6 @@ namespace igsp::io {
 
 namespace {
 
-std::endian byte_order_of(FileFormat format) {
-  return format == FileFormat::ply_binary_big_endian ? std::endian::big : std::endian::little;
-}
-
 std::vector<RecordField> fields_of(const PlyElement& element) {
   std::vector<RecordField> fields;
   for (const PlyProperty& property : element.properties) {

@@ -82,6 +82,10 @@ std::string ply_viewpoint_comment(const Eigen::Vector3d& viewpoint) {
   return fmt::format("comment viewpoint {}", fmt::join(viewpoint.begin(), viewpoint.end(), " "));
 }
 
+std::endian byte_order_of(FileFormat format) {
+  return format == FileFormat::ply_binary_big_endian ? std::endian::big : std::endian::little;
+}
+
 PlyHeader read_ply_header(InputFile& file) {
   PlyHeader header;
   bool format_known = false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -33,6 +34,9 @@ struct PlyHeader {
 /// Where the scanner stood, of the words of a header line `comment viewpoint x y z`; none of any other.
 std::optional<Eigen::Vector3d> ply_viewpoint(const std::vector<std::string_view>& words);
 std::string ply_viewpoint_comment(const Eigen::Vector3d& viewpoint);
+
+/// Of the values of a binary file.
+std::endian byte_order_of(FileFormat format);
 
 /// Consumes everything up to and including end_header.
 PlyHeader read_ply_header(InputFile& file);

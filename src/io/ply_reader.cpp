@@ -18,10 +18,6 @@ bool has_list(const PlyElement& element) {
   return std::ranges::any_of(element.properties, [](const PlyProperty& p) { return p.list_length.has_value(); });
 }
 
-std::endian byte_order_of(FileFormat format) {
-  return format == FileFormat::ply_binary_big_endian ? std::endian::big : std::endian::little;
-}
-
 ListRecords list_records(const PlyElement& element, FileFormat format) {
   ListRecords records{{}, byte_order_of(format), element.count};
   for (const PlyProperty& property : element.properties) {

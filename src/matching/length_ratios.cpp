@@ -11,8 +11,8 @@ constexpr std::size_t max_candidates = 1000;   // those that stand out most
 constexpr double min_rotation_cosine = 0.924;  // of half the angle between two frames' rotations: 45 degrees
 constexpr double min_direction_cosine = 0.94;  // 20 degrees
 constexpr double largest_log = 0.405;          // of the factor: 3/2
-constexpr int bins = 81;                       // of 1 %
-constexpr int reach = 2;                       // bins beside the peak that belong to it
+constexpr int vote_bins = 81;                  // of 1 %
+constexpr int peak_reach = 2;                  // vote_bins beside the peak that belong to it
 
 // In double precision: in which order Eigen sums up three floats depends on the processor.
 struct Pose {
@@ -28,8 +28,8 @@ std::vector<Pose> best_of(std::span<const Candidate> candidates, PointView sourc
   return poses;
 }
 
-std::array<double, bins> votes_of(std::span<const Pose> poses, double min_length) {
-  std::array<double, bins> votes{};
+std::array<double, vote_bins> votes_of(std::span<const Pose> poses, double min_length) {
+  std::array<double, vote_bins> votes{};
   for (std::size_t i = 0; i < poses.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (std::abs(poses[i].rotation.dot(poses[j].rotation)) < min_rotation_cosine) continue;
@@ -38,16 +38,16 @@ std::array<double, bins> votes_of(std::span<const Pose> poses, double min_length
       if (from < min_length || to < min_length) continue;
       const double along = std::max((poses[i].rotation * a).dot(b), (poses[j].rotation * a).dot(b));
       if (along < min_direction_cosine * from * to) continue;
-      const double at = (std::log(to / from) / largest_log + 1) * 0.5 * bins;
-      if (at >= 0 && at < bins) ++votes[static_cast<std::size_t>(at)];
+      const double at = (std::log(to / from) / largest_log + 1) * 0.5 * vote_bins;
+      if (at >= 0 && at < vote_bins) ++votes[static_cast<std::size_t>(at)];
     }
   }
   return votes;
 }
 
-double sum_around(const std::array<double, bins>& votes, int centre, int radius) {
+double sum_around(const std::array<double, vote_bins>& votes, int centre, int radius) {
   double sum = 0;
-  for (int k = std::max(0, centre - radius); k <= std::min(bins - 1, centre + radius); ++k) sum += votes[k];
+  for (int k = std::max(0, centre - radius); k <= std::min(vote_bins - 1, centre + radius); ++k) sum += votes[k];
   return sum;
 }
 
@@ -56,17 +56,18 @@ double sum_around(const std::array<double, bins>& votes, int centre, int radius)
 RatioPeak ratio_peak(std::span<const Candidate> candidates, PointView source, PointView target, double min_length) {
   const auto votes = votes_of(best_of(candidates, source, target), min_length);
   RatioPeak best;
-  for (int centre = reach; centre < bins - reach; ++centre) {
-    const double inside = sum_around(votes, centre, reach);
+  for (int centre = peak_reach; centre < vote_bins - peak_reach; ++centre) {
+    const double inside = sum_around(votes, centre, peak_reach);
     // What lies beside, in a window five times as wide.
-    const int wide = 5 * reach + 2;
-    const double width = std::min(bins - 1, centre + wide) - std::max(0, centre - wide) + 1;
-    const double expected = (sum_around(votes, centre, wide) - inside) / (width - (2 * reach + 1)) * (2 * reach + 1);
+    const int wide = 5 * peak_reach + 2;
+    const double width = std::min(vote_bins - 1, centre + wide) - std::max(0, centre - wide) + 1;
+    const double expected =
+        (sum_around(votes, centre, wide) - inside) / (width - (2 * peak_reach + 1)) * (2 * peak_reach + 1);
     const double prominence = (inside - expected) / std::sqrt(expected + 1);
     if (prominence <= best.prominence) continue;
     double mean = 0;
-    for (int k = centre - reach; k <= centre + reach; ++k) mean += votes[k] * (k + 0.5) / inside;
-    best = {std::exp((mean / (0.5 * bins) - 1) * largest_log), prominence};
+    for (int k = centre - peak_reach; k <= centre + peak_reach; ++k) mean += votes[k] * (k + 0.5) / inside;
+    best = {std::exp((mean / (0.5 * vote_bins) - 1) * largest_log), prominence};
   }
   return best;
 }

@@ -15,14 +15,14 @@ namespace {
 
 // As in the last steps of the fine registration of a pair, [voxels].
 constexpr double normal_radius = 1.5;
-constexpr double search_radius = 1.0;
+constexpr double joint_radius = 1.0;
 constexpr double first_radius = 1.5;  // the pose graph may have moved a scan further than a pair's last step would
-constexpr std::size_t max_points = 8000;
+constexpr std::size_t max_link_points = 8000;
 constexpr std::size_t surfaces_at_once = 8;  // while they are made, their features are in memory
 
-constexpr int max_steps = 10;
-constexpr double small_step = 1e-4;  // [voxels, rad]
-constexpr std::size_t min_pairs = 30;
+constexpr int max_joint_steps = 10;
+constexpr double small_joint_step = 1e-4;  // [voxels, rad]
+constexpr std::size_t min_link_pairs = 30;
 
 // What the surfaces of a link leave open must not make the system singular: every link also resists motion a little,
 // this much at one sigma, without pulling anywhere.
@@ -86,9 +86,9 @@ class Bundle {
   void run() {
     if (links_.empty()) return;
     loss_scales_.assign(links_.size(), 0.0);
-    for (int k = 0; k < max_steps; ++k) {
-      const auto steps = linearise(k == 0 ? first_radius : search_radius).solve();
-      if (!steps || apply_steps(*steps, centres_, poses_) < small_step) break;
+    for (int k = 0; k < max_joint_steps; ++k) {
+      const auto steps = linearise(k == 0 ? first_radius : joint_radius).solve();
+      if (!steps || apply_steps(*steps, centres_, poses_) < small_joint_step) break;
     }
     write_back(equations_of([this](std::size_t l) { return final_factor(*links_[l]); }).covariances());
   }
@@ -156,10 +156,10 @@ class Bundle {
   RelativeFactor factor(const NetworkLink& link, double radius, double& loss_scale) const {
     RelativeFactor result = factor_between(link);
     const Linearisation at_pose = linearise_at(surfaces_[result.source]->surface(), surfaces_[result.target]->surface(),
-                                               result.target_from_source, radius, max_points, 1, loss_scale);
-    loss_scale = loss_scale_of(at_pose.residual_variance, search_radius, 1);
+                                               result.target_from_source, radius, max_link_points, 1, loss_scale);
+    loss_scale = loss_scale_of(at_pose.residual_variance, joint_radius, 1);
     result.centre = at_pose.centre;
-    if (at_pose.pairs >= min_pairs && at_pose.residual_variance > 0) {
+    if (at_pose.pairs >= min_link_pairs && at_pose.residual_variance > 0) {
       result.information += at_pose.hessian / at_pose.residual_variance;
       result.gradient = at_pose.gradient / at_pose.residual_variance;
     }
@@ -171,10 +171,10 @@ class Bundle {
     RelativeFactor result = factor_between(link);
     const std::vector<PlanePair> pairs =
         plane_pairs_at(surfaces_[result.source]->surface(), surfaces_[result.target]->surface(),
-                       result.target_from_source, search_radius, max_points);
+                       result.target_from_source, joint_radius, max_link_points);
     result.scatter = result.information;
-    if (pairs.size() < min_pairs) return result;
-    const PoseCovariance at_pose = pose_covariance(pairs, search_radius, 1);
+    if (pairs.size() < min_link_pairs) return result;
+    const PoseCovariance at_pose = pose_covariance(pairs, joint_radius, 1);
     result.centre = at_pose.centre;
     result.information += at_pose.curvature;
     *result.scatter += at_pose.gradient_covariance;

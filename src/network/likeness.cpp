@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t keypoints_that_vote = 128;
 
 // The least distance of every voter of a scan to those of another.
-std::vector<double> nearest(std::span<const Descriptor> variants, std::size_t flips,
-                            const std::vector<Descriptor>& other) {
+std::vector<double> nearest_distances(std::span<const Descriptor> variants, std::size_t flips,
+                                      const std::vector<Descriptor>& other) {
   std::vector<double> distances(variants.size() / flips, 0);
   feature_distance_rows(variants, flips, other, 1, [&](std::size_t voter, std::span<const std::uint16_t> row) {
     distances[voter] = *std::ranges::min_element(row);
@@ -32,7 +32,7 @@ std::vector<double> votes_of(std::size_t i, std::span<const std::vector<Descript
   std::size_t others = 0;
   for (std::size_t j = 0; j < scans.size(); ++j) {
     if (j == i || scans[j].empty()) continue;
-    distances[j] = nearest(variants, flips, scans[j]);
+    distances[j] = nearest_distances(variants, flips, scans[j]);
     ++others;
   }
   const std::size_t count = variants.size() / flips;

@@ -17,8 +17,8 @@ constexpr double squared_scale = max_loop_error / 9;
 
 constexpr double least_forest_weight = 1e-6;  // the equations stay regular whatever the loss says of a tree's links
 
-constexpr int max_steps = 30;
-constexpr double small_step = 1e-6;  // [voxels, rad]
+constexpr int max_balancing_steps = 30;
+constexpr double balanced_step = 1e-6;  // [voxels, rad]
 
 constexpr std::size_t in_no_tree = SIZE_MAX;
 
@@ -117,9 +117,9 @@ class Balance {
   }
 
   void settle(double leniency) {
-    for (int k = 0; k < max_steps; ++k) {
+    for (int k = 0; k < max_balancing_steps; ++k) {
       const auto steps = linearise(leniency).solve();
-      if (!steps || apply_steps(*steps, graph_.centres, poses_) < small_step) return;
+      if (!steps || apply_steps(*steps, graph_.centres, poses_) < balanced_step) return;
     }
   }
 

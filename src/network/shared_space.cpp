@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spatial/cell_hash.hpp"
+
 namespace igsp {
 namespace {
 
 constexpr std::size_t samples_of_a_scan = 400;
-constexpr double cell_size = 3;    // [voxels]: a pose of a growing network may be a voxel or two off
-constexpr double reach = 1 << 20;  // cells from the origin along an axis; no scan has so many
-
-std::uint64_t key_of(const Eigen::Vector3d& cell) {
-  std::uint64_t key = 0;
-  for (int axis = 0; axis < 3; ++axis) key = key << 21 | static_cast<std::uint64_t>(cell[axis] + reach);
-  return key;
-}
+constexpr double cell_size = 3;  // [voxels]: a pose of a growing network may be a voxel or two off
 
 double share_within(const Space& a, const Space& b, const Transformation& b_from_a) {
   if (a.samples().empty()) return 0;
@@ -29,13 +24,13 @@ Space::Space(const Features& features) : origin_(features.origin), cell_(cell_si
   for (std::size_t i = 0; i < features.points.size(); i += stride) {
     samples_.push_back(features.points[i] + features.origin);
   }
-  for (const Eigen::Vector3d& point : features.points) cells_.insert(key_of((point / cell_).array().floor()));
+  for (const Eigen::Vector3d& point : features.points) cells_.insert(cell_key((point / cell_).array().floor()));
 }
 
 bool Space::holds(const Eigen::Vector3d& point) const {
   const Eigen::Vector3d local = (point - origin_) / cell_;
-  if (!(local.cwiseAbs().maxCoeff() < reach - 1)) return false;
-  return cells_.contains(key_of(local.array().floor()));
+  if (!(local.cwiseAbs().maxCoeff() < cell_reach - 1)) return false;
+  return cells_.contains(cell_key(local.array().floor()));
 }
 
 double shared_space(const Space& a, const Transformation& world_from_a, const Space& b,

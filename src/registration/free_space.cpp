@@ -8,7 +8,7 @@ namespace {
 
 // Surfaces end somewhere between two points and may be met at a grazing angle: what lies on one that was seen, or just
 // beyond its rim, does not contradict, however it is seen.
-constexpr double on_surface = 3.0;  // voxels
+constexpr double beside_surface = 3.0;  // voxels
 
 // People walk, leaves move, rims are met at a grazing angle: right poses of real scans are contradicted by so much,
 // hardly one by more.
@@ -18,9 +18,9 @@ constexpr double decades_per_share = 20, most_decades_against = 2;  // beyond wh
 // A pose that nothing contradicts gains by the rarity of that among the proposals, of which a little is asked of every
 // pose: scenes whose proposals are not contradicted are like themselves elsewhere.
 constexpr double decades_for = 1.3, asked_for = 0.4;
-constexpr double most_rarity = 2;        // decades
-constexpr double alike = 0.003;          // violations, of a few hundred looks
-constexpr double convincing_view = 100;  // points in view for half of that
+constexpr double most_rarity = 2;             // decades
+constexpr double alike_in_violation = 0.003;  // violations, of a few hundred looks
+constexpr double convincing_view = 100;       // points in view for half of that
 
 // Points in view that agree, added to those that are there: few prove little.
 constexpr double assumed_agreeing = 20;
@@ -45,11 +45,11 @@ ScannedSpace::ScannedSpace(const Features& features) : features_(features) {
   for (const ScannedPart& part : features.parts) {
     images_.emplace_back(part.fine_points, part.viewpoint, features.voxel_size);
   }
-  if (is_known()) surface_.emplace(features.points, on_surface * features.voxel_size);
+  if (is_known()) surface_.emplace(features.points, beside_surface * features.voxel_size);
 }
 
 bool ScannedSpace::is_on_surface(const Eigen::Vector3d& point, double growth) const {
-  const double reach = on_surface * growth * features_.voxel_size;
+  const double reach = beside_surface * growth * features_.voxel_size;
   return surface_->nearest(point.cast<float>(), static_cast<float>(reach)) >= 0;
 }
 
@@ -92,7 +92,7 @@ double free_space_evidence(const FreeSpace& free_space, double rarity, double we
 
 double PairSpace::evidence(const FreeSpace& free_space, double weight) const {
   if (proposed_.empty()) return free_space_evidence(free_space, usual_rarity, weight);
-  const double limit = free_space.violation() + alike;
+  const double limit = free_space.violation() + alike_in_violation;
   const auto as_little = static_cast<double>(std::ranges::count_if(proposed_, [&](double v) { return v <= limit; }));
   return free_space_evidence(free_space, std::log10((static_cast<double>(proposed_.size()) + 2) / (as_little + 1)),
                              weight);

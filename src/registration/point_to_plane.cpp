@@ -79,7 +79,7 @@ struct NormalEquations {
 using Partners = std::vector<std::int64_t>;
 
 // The nearest point within the radius. The last one bounds the sphere that has to be searched.
-std::int64_t nearest(const Surface& target, const Eigen::Vector3f& p, float radius, std::int64_t* last) {
+std::int64_t nearest_point(const Surface& target, const Eigen::Vector3f& p, float radius, std::int64_t* last) {
   if (!last) return target.grid().nearest(p, radius);
   if (*last >= 0) {
     const float distance = 1.0001f * (target.point(*last).cast<float>() - p).norm();
@@ -104,7 +104,7 @@ void visit_pairs(const Surface& source, const Surface& target, const Transformat
   for (std::size_t i = begin * sample.stride; i < std::min(source.size(), end * sample.stride); i += sample.stride) {
     const Eigen::Vector3d p = pose * (scale * source.point(i));
     const std::int64_t j =
-        nearest(target, p.cast<float>(), static_cast<float>(radius), partners ? &(*partners)[i] : nullptr);
+        nearest_point(target, p.cast<float>(), static_cast<float>(radius), partners ? &(*partners)[i] : nullptr);
     if (j < 0) continue;
     const Eigen::Vector3d p_normal = pose.linear() * source.normal(i), q_normal = target.normal(j);
     const double cosine = p_normal.dot(q_normal);

@@ -32,13 +32,13 @@ constexpr double undemanding_overlap = 0.4, demanding_overlap = 0.7, decades_per
 // Free space confirms what contact and matches say, not in place of them: that is little on large voxels, nothing for
 // the first number of them and all for the second, and where surfaces cross. Whatever was registered before it weighed
 // so much touched at 0.8 and more (docs/decisions, 15).
-constexpr double coarse_voxels = 300, fine_voxels = 3000;
+constexpr double few_voxels = 300, many_voxels = 3000;
 constexpr double crossing = 0.7, lying = 0.8;
 
 double weight_of_free_space(const PoseAssessment& pose, const CommonFrame& frame) {
   const double voxels = std::sqrt(static_cast<double>(frame.source().features.points.size()) *
                                   static_cast<double>(frame.target().features.points.size()));
-  return std::clamp(std::log(voxels / coarse_voxels) / std::log(fine_voxels / coarse_voxels), 0.0, 1.0) *
+  return std::clamp(std::log(voxels / few_voxels) / std::log(many_voxels / few_voxels), 0.0, 1.0) *
          std::clamp((pose.contact() - crossing) / (lying - crossing), 0.0, 1.0);
 }
 

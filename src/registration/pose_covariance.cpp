@@ -63,14 +63,14 @@ struct Patch {
   double weight = 0;
 };
 
-// Sums over all pairs, and the gradients of patches in the order of their places.
-struct Sums {
+// PairSums over all pairs, and the gradients of patches in the order of their places.
+struct PairSums {
   Matrix6 hessian = Matrix6::Zero();
   std::map<std::array<std::int64_t, 3>, Patch> patches;
 };
 
-Sums sum_up(std::span<const PlanePair> pairs, const Weighted& weighted, double patch) {
-  Sums sums;
+PairSums sum_up(std::span<const PlanePair> pairs, const Weighted& weighted, double patch) {
+  PairSums sums;
   for (const PlanePair& pair : pairs) {
     const Eigen::Vector3d place = pair.place - weighted.centroid;
     const double weight = weighted.weight_of(pair);
@@ -105,7 +105,7 @@ Matrix6 solve(const Matrix6& matrix, const Matrix6& right) {
 }
 
 // Covariance of the gradient.
-Matrix6 scatter_of(const Sums& sums, double weight_sum, double residual_variance) {
+Matrix6 scatter_of(const PairSums& sums, double weight_sum, double residual_variance) {
   Matrix6 scatter = Matrix6::Zero();
   double squares = 0;
   for (const auto& [cell, patch] : sums.patches) {
@@ -128,7 +128,7 @@ PoseCovariance pose_covariance(std::span<const PlanePair> pairs, double radius, 
   result.residual_variance = weighted.squares / weighted.sum;
   if (!(result.residual_variance > 0)) return result;
   const double patch = std::min(patch_size * voxel_size, size_of(pairs, weighted));
-  const Sums sums = sum_up(pairs, weighted, patch);
+  const PairSums sums = sum_up(pairs, weighted, patch);
   const Matrix6 scatter = scatter_of(sums, weighted.sum, result.residual_variance);
   result.curvature = sums.hessian / result.residual_variance;
   result.gradient_covariance = beyond_patches / (result.residual_variance * result.residual_variance) * scatter;

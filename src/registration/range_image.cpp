@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "spatial/direction_image.hpp"
+
 namespace igsp {
 namespace {
 
@@ -15,9 +17,6 @@ constexpr double most_growth = 8;   // of the aperture, where a scanner's lines 
 constexpr double line = 0.05;       // one variance of the other
 constexpr int min_seen = 3;         // points in the aperture
 constexpr double max_offset = 0.5;  // of their mean from the direction, in apertures: a half disc has 0.42, a rim more
-
-// Farther away it would cost digits and change nothing: lines of sight are parallel to a millionth.
-constexpr double farthest = 1e6;  // of the cloud's size
 
 // What was seen within an aperture about a direction. In which order Eigen sums up three floats depends on the
 // processor, that of doubles does not.
@@ -54,9 +53,9 @@ double largest_distance(PointView points, const Eigen::Vector3d& from) {
   return std::sqrt(squared);
 }
 
-Eigen::Vector3d not_too_far(PointView points, const Eigen::Vector3d& viewpoint) {
-  const double limit = farthest * largest_distance(points, Eigen::Vector3d::Zero()), distance = viewpoint.stableNorm();
-  return distance > limit && limit > 0 ? Eigen::Vector3d(viewpoint * (limit / distance)) : viewpoint;
+Eigen::Vector3d drawn_near(PointView points, const Eigen::Vector3d& viewpoint) {
+  const double size = largest_distance(points, Eigen::Vector3d::Zero());
+  return size > 0 ? not_too_far(viewpoint, Eigen::Vector3d::Zero(), size) : viewpoint;
 }
 
 double median_range(PointView points, const Eigen::Vector3d& viewpoint) {
@@ -72,7 +71,7 @@ double median_range(PointView points, const Eigen::Vector3d& viewpoint) {
 }  // namespace
 
 RangeImage::RangeImage(PointView points, const Eigen::Vector3d& viewpoint, double voxel_size)
-    : viewpoint_(not_too_far(points, viewpoint)),
+    : viewpoint_(drawn_near(points, viewpoint)),
       aperture_(aperture * voxel_size),
       tolerance_(in_front * voxel_size),
       radius_(median_range(points, viewpoint_)),

@@ -18,7 +18,7 @@ constexpr double roughly_on_itself = 0.8, on_itself = 0.99;  // share of the poi
 constexpr double keypoints_on_itself = 0.9;                  // three boxes on a field are few of its points
 constexpr double roughly_near = 2, near = 0.75;              // voxels from the surface
 constexpr double reach = 2;                                  // voxels: sparse surfaces have gaps
-constexpr std::size_t max_points = 1500;
+constexpr std::size_t max_settled = 1500;
 constexpr std::array<double, 5> radii{3, 2, 2, 1.5, 1};  // voxels
 
 struct Axis {
@@ -100,7 +100,7 @@ std::vector<double> likely_turns(const Axis& axis, PointView points) {
 // Share of the points, turned, within so many voxels of the surface.
 double share_on_itself(const PreparedCloud& cloud, PointView points, const Transformation& turn, double voxels) {
   const double v = cloud.features.voxel_size;
-  const std::size_t stride = std::max<std::size_t>(1, points.size() / max_points);
+  const std::size_t stride = std::max<std::size_t>(1, points.size() / max_settled);
   std::size_t looked_at = 0, found = 0;
   for (std::size_t i = 0; i < points.size(); i += stride) {
     ++looked_at;
@@ -118,7 +118,7 @@ std::vector<Transformation> turns_onto_itself(const PreparedCloud& cloud) {
   const Points& points = cloud.features.points;
   if (points.empty()) return found;
   const Surface surface = surface_of(cloud);
-  const PointToPlaneOptions settling{max_points, max_points, radii, 0, cloud.features.voxel_size, 6, 1};
+  const PointToPlaneOptions settling{max_settled, max_settled, radii, 0, cloud.features.voxel_size, 6, 1};
   for (const Axis& axis : principal_axes(points)) {
     for (const double angle_rad : likely_turns(axis, points)) {
       Transformation turn = axis.turn(angle_rad);

@@ -8,7 +8,7 @@
 namespace igsp {
 namespace {
 
-constexpr int max_steps = 4;
+constexpr int max_fits = 4;
 constexpr double settled = 1e-4;  // of the logarithm of a step: no point moves by more than a fraction of the noise
 constexpr double sensible = 0.3;  // of the logarithm of a step, which must follow from a pose that is nearly right
 constexpr std::size_t max_tried = 3;
@@ -27,7 +27,7 @@ SimilarityResult at_factor(const Scan& source, const Scan& target, double factor
 SimilarityResult similarity_near(const Scan& source, const Scan& target, double factor, const Options& options,
                                  const ProgressCallback& progress) {
   SimilarityResult similarity = at_factor(source, target, factor, options, progress);
-  for (int step = 0; step < max_steps; ++step) {
+  for (int step = 0; step < max_fits; ++step) {
     const Precision& precision = similarity.result.precision;
     const double growth = std::abs(std::log(precision.scale));
     if (!(precision.scale_sigma > 0) || growth < settled || growth > sensible) break;

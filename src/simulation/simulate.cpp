@@ -12,7 +12,7 @@ namespace igsp {
 namespace {
 
 constexpr int max_stations = 64;
-constexpr int max_points = 100'000'000;
+constexpr int most_points_a_scan = 100'000'000;
 
 void require(bool valid, std::string_view name, double value, std::string_view range) {
   if (!valid) throw InvalidArgument(fmt::format("{} = {} is out of range {}", name, value, range));
@@ -21,8 +21,8 @@ void require(bool valid, std::string_view name, double value, std::string_view r
 void validate(const SimulationOptions& options) {
   require(options.stations >= 1 && options.stations <= max_stations, "stations", options.stations,
           fmt::format("[1, {}]", max_stations));
-  require(options.points >= 1 && options.points <= max_points, "points", options.points,
-          fmt::format("[1, {}]", max_points));
+  require(options.points >= 1 && options.points <= most_points_a_scan, "points", options.points,
+          fmt::format("[1, {}]", most_points_a_scan));
   const double noise = options.noise.value_or(0.0), distance = options.station_distance;
   require(std::isfinite(noise) && noise >= 0.0, "noise", noise, "[0, infinity)");
   require(std::isfinite(distance) && distance >= 0.0, "station_distance", distance, "[0, infinity)");

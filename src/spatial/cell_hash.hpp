@@ -13,4 +13,22 @@ inline std::uint64_t cell_hash(const Eigen::Vector3d& place) {
   return (key ^ (key >> 29)) * 0xBF58476D1CE4E5B9ull;
 }
 
+/// Cells from the origin along an axis that a key tells apart.
+inline constexpr double cell_reach = 1 << 20;
+inline constexpr int cell_key_bits = 21;  // an axis
+static_assert(cell_reach == 1 << (cell_key_bits - 1));
+
+/// Another number for every cell; `cell` whole, in [-cell_reach, cell_reach).
+inline std::uint64_t cell_key(const Eigen::Vector3d& cell) {
+  const auto biased = [](double c) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(c + cell_reach)); };
+  return biased(cell.z()) << (2 * cell_key_bits) | biased(cell.y()) << cell_key_bits | biased(cell.x());
+}
+
+/// The cell of a key.
+inline Eigen::Vector3d cell_of(std::uint64_t key) {
+  constexpr std::uint64_t mask = (std::uint64_t{1} << cell_key_bits) - 1;
+  const auto axis = [&](int i) { return static_cast<double>(key >> (i * cell_key_bits) & mask) - cell_reach; };
+  return {axis(0), axis(1), axis(2)};
+}
+
 }  // namespace igsp

@@ -16,6 +16,12 @@ std::uint32_t cell_along(double position, double half_width, std::uint32_t size)
 
 }  // namespace
 
+Eigen::Vector3d not_too_far(const Eigen::Vector3d& viewpoint, const Eigen::Vector3d& centre, double size) {
+  const Eigen::Vector3d offset = viewpoint - centre;
+  const double distance = offset.stableNorm(), limit = 1e6 * size;
+  return distance > limit ? Eigen::Vector3d(centre + offset * (limit / distance)) : viewpoint;
+}
+
 DirectionImage::DirectionImage(const Eigen::Vector3d& viewpoint, const Eigen::Vector3d& centre, double radius,
                                int cells_per_face)
     : viewpoint_(viewpoint),

@@ -7,6 +7,11 @@
 
 namespace igsp {
 
+/// A viewpoint more than a million sizes of the cloud away, drawn nearer along its direction: lines of sight are
+/// parallel to a millionth, and farther away digits would be lost or squares overflow. `size` of the cloud about
+/// `centre`.
+Eigen::Vector3d not_too_far(const Eigen::Vector3d& viewpoint, const Eigen::Vector3d& centre, double size);
+
 /// Directions from a viewpoint in numbered cells: the six faces of a cube about it, or one image of a cloud that is far
 /// away, so that its cells stay small against the cloud.
 class DirectionImage {

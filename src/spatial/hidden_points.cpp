@@ -15,15 +15,6 @@ namespace {
 
 constexpr double tolerance = 1.0 / 50;  // of the cloud's size: what one surface at a grazing angle spans in a direction
 
-// Beyond, lines of sight are parallel to a millionth, and squares might overflow.
-constexpr double farthest = 1e6;  // sizes
-
-Eigen::Vector3d not_too_far(const Eigen::Vector3d& viewpoint, const Eigen::Vector3d& centre, double size) {
-  const Eigen::Vector3d offset = viewpoint - centre;
-  const double distance = offset.stableNorm(), limit = farthest * size;
-  return distance > limit ? Eigen::Vector3d(centre + offset * (limit / distance)) : viewpoint;
-}
-
 }  // namespace
 
 HiddenPoints hidden_points(PointView points, const Eigen::Vector3d& viewpoint, int to_a_right_angle) {

@@ -17,7 +17,7 @@ namespace {
 constexpr double max_voxels_per_point = 0.6;  // above it the voxels would only repeat the raw sampling
 constexpr double max_lonely = 0.6;       // of the voxels hold one point: an even sampling at the limit above has 0.55
 constexpr double lonely_per_step = 0.5;  // how fast their share falls with the logarithm of the voxel size, about
-constexpr int max_steps = 24;            // dense clouds need 3 to 5, those limited by their spacing up to 12
+constexpr int max_scale_steps = 24;      // dense clouds need 3 to 5, those limited by their spacing up to 12
 constexpr double max_voxels_across = 1 << 18;  // a quarter of what the voxel filter holds: few places ask for more
 
 struct Occupancy {
@@ -58,7 +58,7 @@ double choose_voxel_size(const TrimmedCloud& source, const TrimmedCloud& target,
       threads, [&] { source_noise = scattered_noise(source.points(), source.bounds()); },
       [&] { target_noise = scattered_noise(target.points(), target.bounds()); });
   double voxel_size = extent / 200;
-  for (int step = 0; step < max_steps; ++step) {
+  for (int step = 0; step < max_scale_steps; ++step) {
     Occupancy in_source, in_target;
     parallel_pair(
         threads, [&] { in_source = occupancy(source.points(), source.bounds(), source_noise, voxel_size); },

@@ -33,13 +33,13 @@ Counts count_along_axes(PointView cloud, const Bounds& bounds) {
 }
 
 // Bins of one axis that hold the crowd: [first, last].
-struct Range {
+struct BinRange {
   std::size_t first = 0, last = bins - 1;
   bool is_all() const { return first == 0 && last == bins - 1; }
 };
 
 // From either end inwards: what lies before an empty stretch goes, if it is little and the stretch long.
-Range crowd_of(const std::array<std::size_t, bins>& counts, std::size_t max_outside) {
+BinRange crowd_of(const std::array<std::size_t, bins>& counts, std::size_t max_outside) {
   const auto first_of_crowd = [&](auto count) {
     std::size_t passed = 0, result = 0;
     for (std::size_t i = 0; i < bins && passed <= max_outside; ++i) {
@@ -54,10 +54,10 @@ Range crowd_of(const std::array<std::size_t, bins>& counts, std::size_t max_outs
   };
   const std::size_t first = first_of_crowd([&](std::size_t i) { return counts[i]; });
   const std::size_t last = bins - 1 - first_of_crowd([&](std::size_t i) { return counts[bins - 1 - i]; });
-  return first <= last ? Range{first, last} : Range{};
+  return first <= last ? BinRange{first, last} : BinRange{};
 }
 
-Bounds bounds_within(PointView cloud, const Bounds& outer, const std::array<Range, 3>& crowd) {
+Bounds bounds_within(PointView cloud, const Bounds& outer, const std::array<BinRange, 3>& crowd) {
   const Eigen::Vector3d bin = (outer.max - outer.min) / bins;
   Bounds box = outer;
   for (int axis = 0; axis < 3; ++axis) {
@@ -93,9 +93,9 @@ TrimmedCloud::TrimmedCloud(PointView cloud, std::string_view name) : given_(clou
   const auto max_outside = static_cast<std::size_t>(max_share * static_cast<double>(cloud.size()));
   while (bounds_.diagonal() > 0) {
     const Counts counts = count_along_axes(cloud, bounds_);
-    std::array<Range, 3> crowd;
+    std::array<BinRange, 3> crowd;
     for (int axis = 0; axis < 3; ++axis) crowd[axis] = crowd_of(counts[axis], max_outside);
-    if (std::ranges::all_of(crowd, &Range::is_all)) break;
+    if (std::ranges::all_of(crowd, &BinRange::is_all)) break;
     const Bounds within = bounds_within(cloud, bounds_, crowd);
     const StrayPoints stray = stray_points(cloud, within);
     // Where all that stays is one place, it is no cloud; where much would go, it is no stray.

@@ -11,23 +11,9 @@
 namespace igsp {
 namespace {
 
-constexpr int bits_per_axis = 21;
-constexpr double max_cell = VoxelFilter::reach;
-static_assert(max_cell == 1 << (bits_per_axis - 1));
 // As fine as the coordinates themselves are in a cloud 2000 voxels across.
 constexpr double steps_per_voxel = 0x1p42;
 constexpr int carry_bits = 10;
-
-std::uint64_t key_of(const Eigen::Vector3d& cell) {
-  const auto biased = [](double c) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(c + max_cell)); };
-  return biased(cell.z()) << (2 * bits_per_axis) | biased(cell.y()) << bits_per_axis | biased(cell.x());
-}
-
-Eigen::Vector3d cell_of(std::uint64_t key) {
-  constexpr std::uint64_t mask = (std::uint64_t{1} << bits_per_axis) - 1;
-  const auto axis = [&](int i) { return static_cast<double>(key >> (i * bits_per_axis) & mask) - max_cell; };
-  return {axis(0), axis(1), axis(2)};
-}
 
 std::uint64_t scatter(std::uint64_t key) {
   key *= 0x9E3779B97F4A7C15ull;  // Fibonacci hashing: the golden ratio spreads neighbouring cells
@@ -63,13 +49,13 @@ void VoxelFilter::add(PointView chunk) {
     const Eigen::Vector3d local = point - origin_;
     const Eigen::Vector3d place = local * inverse;
     const Eigen::Vector3d cell = place.array().floor();
-    if (!(cell.array().abs().maxCoeff() < max_cell)) {
+    if (!(cell.array().abs().maxCoeff() < cell_reach)) {
       throw InvalidArgument(
           fmt::format("voxel_size is {}: too small for a cloud of this extent (a point lies {} away from the origin of "
                       "the grid; at most 2^20 voxels are possible)",
                       voxel_size_, local.norm()));
     }
-    const std::uint64_t key = key_of(cell);
+    const std::uint64_t key = cell_key(cell);
     const std::size_t slot = slot_of(key);
     if (table_[slot] != 0) {
       add(place - cell, voxels_[table_[slot] - 1]);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "igsp/point_cloud.hpp"
+#include "spatial/cell_hash.hpp"
 
 namespace igsp {
 
@@ -12,7 +13,7 @@ namespace igsp {
 class VoxelFilter {
  public:
   /// Points may lie at most this many voxels away from the origin along an axis.
-  static constexpr double reach = 1 << 20;
+  static constexpr double reach = cell_reach;
 
   /// Voxel boundaries pass through `origin`. Throws InvalidArgument unless voxel_size is positive and finite.
   VoxelFilter(const Eigen::Vector3d& origin, double voxel_size);

@@ -32,7 +32,7 @@ std::string type_name(const Option& option) {
 std::string description(const Option& option) {
   const std::string unit = option.unit.empty() ? "" : fmt::format(" [{}]", option.unit);
   const std::string range = option.kind == OptionKind::boolean ? "" : "; " + values_in_words(option);
-  return wrapped(fmt::format("{}{}{}; default {}", option.help, unit, range, to_string(option.get(Options{}))));
+  return wrapped(fmt::format("{}{}{}; default {}", option.help, unit, range, igsp::to_string(option.get(Options{}))));
 }
 
 void add_flag(CLI::App& command, const Option& option, std::optional<std::string>& text) {

@@ -17,7 +17,7 @@ void open_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
     // The lowest free number is taken: this one. Nothing can be written to a stream that is opened for reading.
-    open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+    ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
   }
 }
 
