@@ -51,7 +51,7 @@ Weighted weigh(std::span<const PlanePair> pairs, double radius, double voxel_siz
   return result;
 }
 
-double size_of(std::span<const PlanePair> pairs, const Weighted& weighted) {
+double weighted_size(std::span<const PlanePair> pairs, const Weighted& weighted) {
   double squares = 0;
   for (const PlanePair& pair : pairs)
     squares += weighted.weight_of(pair) * (pair.place - weighted.centroid).squaredNorm();
@@ -127,7 +127,7 @@ PoseCovariance pose_covariance(std::span<const PlanePair> pairs, double radius, 
   result.centre = weighted.centroid;
   result.residual_variance = weighted.squares / weighted.sum;
   if (!(result.residual_variance > 0)) return result;
-  const double patch = std::min(patch_size * voxel_size, size_of(pairs, weighted));
+  const double patch = std::min(patch_size * voxel_size, weighted_size(pairs, weighted));
   const PairSums sums = sum_up(pairs, weighted, patch);
   const Matrix6 scatter = scatter_of(sums, weighted.sum, result.residual_variance);
   result.curvature = sums.hessian / result.residual_variance;
