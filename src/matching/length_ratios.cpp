@@ -12,7 +12,7 @@ constexpr double min_rotation_cosine = 0.924;  // of half the angle between two 
 constexpr double min_direction_cosine = 0.94;  // 20 degrees
 constexpr double largest_log = 0.405;          // of the factor: 3/2
 constexpr int vote_bins = 81;                  // of 1 %
-constexpr int peak_reach = 2;                  // vote_bins beside the peak that belong to it
+constexpr int peak_reach = 2;                  // bins beside the peak that belong to it
 
 // In double precision: in which order Eigen sums up three floats depends on the processor.
 struct Pose {

@@ -63,7 +63,7 @@ struct Patch {
   double weight = 0;
 };
 
-// PairSums over all pairs, and the gradients of patches in the order of their places.
+// Sums over all pairs, and the gradients of patches in the order of their places.
 struct PairSums {
   Matrix6 hessian = Matrix6::Zero();
   std::map<std::array<std::int64_t, 3>, Patch> patches;
