@@ -9,9 +9,11 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "igsp/errors.hpp"
 #include "igsp/io.hpp"
+#include "io/rows.hpp"
 
 namespace igsp::fuzzing {
 
@@ -41,9 +43,22 @@ inline bool read_in_chunks(const std::filesystem::path& path, std::size_t points
   return true;
 }
 
+/// As igsp convert reads it: rows of numbers, or a FileError.
+inline void read_rows(const std::filesystem::path& path) {
+  try {
+    io::InputFile file(path);
+    io::RowSource rows = io::open_rows(file, {});
+    std::vector<double> row(rows.fields.size());
+    while (rows.next(row)) {
+    }
+  } catch (const FileError&) {
+  }
+}
+
 /// Whatever the bytes, reading them either gives finite points or throws FileError, and the size of the chunks changes
 /// nothing.
 inline void check_reader(const std::filesystem::path& path) {
+  read_rows(path);
   Points large, small;
   const bool read = read_in_chunks(path, PointReader::default_chunk, large);
   require(read == read_in_chunks(path, 3, small));

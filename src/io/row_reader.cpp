@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/binary_records.hpp"
 #include "io/file_format.hpp"
 #include "io/point_body.hpp"
 #include "io/rows.hpp"
@@ -14,8 +15,7 @@ namespace {
 std::uint64_t list_bytes(InputFile& file, const RowValue& value, std::endian byte_order) {
   const std::uint64_t start = file.offset();
   const double length = decoder_of(*value.list_length, byte_order)(file.read(size_of(*value.list_length)).data());
-  if (length < 0) file.fail_at_offset(start, fmt::format("a list of {} values", length));
-  return static_cast<std::uint64_t>(length) * size_of(value.type);
+  return list_length(file, start, length) * size_of(value.type);
 }
 
 }  // namespace
