@@ -266,6 +266,14 @@ TEST(FreeSpace, BeyondTheRimOfWhatWasSeenNothingIsKnown) {
   EXPECT_EQ(image.look_at({0, 0, 0}).sight, RangeImage::Sight::out_of_view);
 }
 
+// Squares of the cloud's places are 0, those of the viewpoint infinite.
+TEST(FreeSpace, ACloudAlmostWithoutExtentSeenFromVeryFarAwayIsOneSpot) {
+  Points spot;
+  for (int i = 0; i < 20; ++i) spot.push_back(1e-170 * Vector3d(i, i % 3, i % 5));
+  const RangeImage image(spot, Vector3d(1e200, 2e200, 0), voxel_size);
+  EXPECT_EQ(image.look_at({0, 0, 0}).sight, RangeImage::Sight::possible);
+}
+
 TEST(FreeSpace, IsAskedAtTheFinestVoxelsOnEveryRung) {
   const Points left = two_rooms().seen_from(left_eye, Random(1)), right = two_rooms().seen_from(right_eye, Random(2));
   const Cloud a({left, left_eye}), b({right, right_eye});

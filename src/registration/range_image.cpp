@@ -53,9 +53,10 @@ double largest_distance(PointView points, const Eigen::Vector3d& from) {
   return std::sqrt(squared);
 }
 
-Eigen::Vector3d drawn_near(PointView points, const Eigen::Vector3d& viewpoint) {
-  const double size = largest_distance(points, Eigen::Vector3d::Zero());
-  return size > 0 ? not_too_far(viewpoint, Eigen::Vector3d::Zero(), size) : viewpoint;
+// A cloud has the size of a voxel at least: squares of what is far smaller are 0.
+Eigen::Vector3d drawn_near(PointView points, const Eigen::Vector3d& viewpoint, double voxel_size) {
+  const double size = std::max(largest_distance(points, Eigen::Vector3d::Zero()), voxel_size);
+  return not_too_far(viewpoint, Eigen::Vector3d::Zero(), size);
 }
 
 double median_range(PointView points, const Eigen::Vector3d& viewpoint) {
@@ -71,7 +72,7 @@ double median_range(PointView points, const Eigen::Vector3d& viewpoint) {
 }  // namespace
 
 RangeImage::RangeImage(PointView points, const Eigen::Vector3d& viewpoint, double voxel_size)
-    : viewpoint_(drawn_near(points, viewpoint)),
+    : viewpoint_(drawn_near(points, viewpoint, voxel_size)),
       aperture_(aperture * voxel_size),
       tolerance_(in_front * voxel_size),
       radius_(median_range(points, viewpoint_)),
