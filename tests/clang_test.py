@@ -24,13 +24,14 @@ def as_wholes(entries, folder):
     """The entries, but one a target for all its files of several sources; written into `folder`."""
     kept, together = [], defaultdict(list)
     for entry in entries:
-        file = Path(entry["file"])
-        together[file.parent].append(entry) if file.parent.name == "Unity" else kept.append(entry)
+        folder_of_file = Path(entry["file"]).parent
+        group = together[folder_of_file] if folder_of_file.name == "Unity" else kept
+        group.append(entry)
     for number, parts in enumerate(together.values()):
-        whole = Path(folder) / f"{number}.cxx"
-        whole.write_text("".join(f'#include "{part["file"]}"\n' for part in parts))
+        source = Path(folder) / f"{number}.cxx"
+        source.write_text("".join(f'#include "{part["file"]}"\n' for part in parts))
         first = parts[0]
-        kept.append({**first, "file": str(whole), "command": first["command"].replace(first["file"], str(whole))})
+        kept.append({**first, "file": str(source), "command": first["command"].replace(first["file"], str(source))})
     return kept
 
 

@@ -22,9 +22,8 @@ void add_records(const std::array<Coordinate, 3>& xyz, const char* bytes, std::u
 }
 
 void skip_list(InputFile& file, const BinaryField& field, std::endian byte_order) {
-  const std::uint64_t start = file.offset();
-  const double length = decoder_of(field.list_length, byte_order)(file.read(size_of(field.list_length)).data());
-  file.skip(list_length(file, start, length) * size_of(field.type));
+  const std::string_view written = file.read(size_of(field.list_length));
+  file.skip(list_bytes(file, written, field.list_length, field.type, byte_order));
 }
 
 /// Passes one record; its coordinates where it has them.
@@ -45,10 +44,14 @@ PointCoordinates read_record(InputFile& file, const ListRecords& records) {
 
 }  // namespace
 
-std::uint64_t list_length(const InputFile& file, std::uint64_t offset, double length) {
-  constexpr double too_long = 0x1p32;  // whose bytes can be counted
-  if (!(length >= 0 && length < too_long)) file.fail_at_offset(offset, fmt::format("a list of {} values", length));
-  return static_cast<std::uint64_t>(length);
+std::uint64_t list_bytes(const InputFile& file, std::string_view written, ScalarType length, ScalarType value,
+                         std::endian byte_order) {
+  constexpr double too_long = 0x1p32;  // whose bytes cannot be counted
+  const double count = decoder_of(length, byte_order)(written.data());
+  if (!(count >= 0 && count < too_long)) {
+    file.fail_at_offset(file.offset() - written.size(), fmt::format("a list of {} values", count));
+  }
+  return static_cast<std::uint64_t>(count) * size_of(value);
 }
 
 void FixedRecords::require_records(const InputFile& file) const {

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "io/chunk.hpp"
@@ -60,7 +61,9 @@ struct ColumnRecords {
   void fill(InputFile&, Chunk& chunk);  ///< needs no more of the file; the signature is that of the others
 };
 
-/// The length of a list as a file at this byte says it; fails for what is none, a negative or 2^32 and more.
-std::uint64_t list_length(const InputFile& file, std::uint64_t offset, double length);
+/// The bytes of a list's values, after its length, `written`, has been read; fails for a length that is none, negative
+/// or 2^32 and more.
+std::uint64_t list_bytes(const InputFile& file, std::string_view written, ScalarType length, ScalarType value,
+                         std::endian byte_order);
 
 }  // namespace igsp::io

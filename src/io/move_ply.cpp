@@ -41,11 +41,9 @@ void write_header(MoveJob& job, const PlyHeader& header, const std::vector<Recor
 
 /// The bytes of a list that come behind its length, which is appended.
 std::uint64_t read_list_length(InputFile& file, const RecordField& field, std::endian byte_order, std::string& bytes) {
-  const std::uint64_t start = file.offset();
-  const std::string_view raw = file.read(size_of(*field.list_length));
-  bytes += raw;
-  const double length = decoder_of(*field.list_length, byte_order)(raw.data());
-  const std::uint64_t size = list_length(file, start, length) * size_of(field.type);
+  const std::string_view written = file.read(size_of(*field.list_length));
+  bytes += written;
+  const std::uint64_t size = list_bytes(file, written, *field.list_length, field.type, byte_order);
   file.require_records(1, size, "lists");
   return size;
 }

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "igsp/errors.hpp"
 #include "io/io_testing.hpp"
 #include "io/rows.hpp"
@@ -48,11 +46,8 @@ TEST(PlyRows, AnElementBeforeThemThatIsCutOffIsNamed) {
 TEST(PlyRows, AListLongerThanBytesCanBeCountedIsRefused) {
   const std::string face = "element face 1\nproperty list uint64 double i\n";
   EXPECT_THROW(first_row(ply_of("binary_little_endian", face + one_vertex, std::string(20, '\xFF'))), FileError);
-  const std::string real = "element face 1\nproperty list double uchar i\n";
-  for (const double length : {-1.0, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THROW(first_row(ply_of("binary_little_endian", real + one_vertex, bytes_of(length) + std::string(12, '1'))),
-                 FileError);
-  }
+  const std::string small = "element face 1\nproperty list char uchar i\n";
+  EXPECT_THROW(first_row(ply_of("binary_little_endian", small + one_vertex, std::string(13, '\xFF'))), FileError);
 }
 
 }  // namespace

@@ -10,16 +10,6 @@
 
 namespace igsp::io {
 
-namespace {
-
-std::uint64_t list_bytes(InputFile& file, const RowValue& value, std::endian byte_order) {
-  const std::uint64_t start = file.offset();
-  const double length = decoder_of(*value.list_length, byte_order)(file.read(size_of(*value.list_length)).data());
-  return list_length(file, start, length) * size_of(value.type);
-}
-
-}  // namespace
-
 double checked_value(const InputFile& file, double value, ScalarType type) {
   const bool wide = type == ScalarType::int64 || type == ScalarType::uint64;
   if (wide && std::abs(value) > 0x1p53) {
@@ -44,7 +34,8 @@ std::function<bool(std::span<double>)> binary_rows(InputFile& file, std::vector<
     for (std::size_t i = 0; i < values.size(); ++i) {
       const RowValue& value = values[i];
       if (value.list_length) {
-        file.skip(list_bytes(file, value, byte_order));
+        const std::string_view written = file.read(size_of(*value.list_length));
+        file.skip(list_bytes(file, written, *value.list_length, value.type, byte_order));
         continue;
       }
       const char* bytes = file.read(size_of(value.type)).data();
