@@ -93,11 +93,12 @@ bool is_nameless_section(std::string_view line) {
   return !(std::isalnum(letter) || std::string_view("_-\"']").find(line[name]) != std::string_view::npos);
 }
 
-// Beyond ASCII outside of strings and comments: no name has that, and the parser's tables of letters have gaps into
-// which it falls.
+// Beyond ASCII outside of comments: no name and no value has that, and the parser's tables of letters have gaps into
+// which it falls. Within quotes neither: what opens them for us may be another fault for the parser.
 bool has_foreign_letter(std::string_view line) {
   char quote = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
+    if (static_cast<unsigned char>(line[i]) > 127) return true;
     if (quote != 0) {
       if (line[i] == quote) quote = 0;
       if (line[i] == '\\' && quote == '"') ++i;
@@ -105,8 +106,6 @@ bool has_foreign_letter(std::string_view line) {
       return false;
     } else if (line[i] == '"' || line[i] == '\'') {
       quote = line[i];
-    } else if (static_cast<unsigned char>(line[i]) > 127) {
-      return true;
     }
   }
   return false;
@@ -130,7 +129,7 @@ void check_lines(std::string_view text, std::string_view name) {
     const auto fail = [&](std::string_view fault) { throw FileError(fmt::format("{}:{}: {}", name, number, fault)); };
     if (is_deep(line)) fail("more than 32 dots: an option is called section.name");
     if (opens_long_string(line)) fail("an option takes no string of several lines");
-    if (has_foreign_letter(line)) fail("letters outside of ASCII belong into comments and strings");
+    if (has_foreign_letter(line)) fail("letters outside of ASCII belong into comments");
     if (is_nameless_section(line.substr(first))) fail("a section in brackets needs a name: [section]");
   }
 }
