@@ -160,6 +160,7 @@ class Mistakes(BenchmarkTest):
     def test_wrong_flags(self):
         self.refuses(GOOD, "--only", "prak", code=2, saying=["prak", "park"])
         self.refuses(GOOD, "--preset", "papre", code=2, saying="papre")
+        self.refuses(GOOD, "--preset", "paper", "--preset", "paper", code=2, saying="--preset paper is given twice")
         self.refuses(GOOD, "--jobs", "0", code=2, saying="--jobs")
         self.refuses(GOOD, "--scramble", "1", "--no-scramble", code=2, saying="--scramble")
         self.refuses(GOOD, "--out", self.cases, code=2, saying="--out and CASES")

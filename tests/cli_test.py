@@ -287,6 +287,12 @@ class Align(CommandTest):
             refused = self.igsp("evaluate", "--transform", "T.txt", "--truth", self.truth, code=3)
             self.assertIn("multiplies by 0.30", refused.stderr)
 
+    def test_a_stray_point_is_left_out_and_said(self):
+        points, kind = read_ply(self.source)
+        stray = points.mean(0) + [10 * np.linalg.norm(np.ptp(points, axis=0)), 0, 0]
+        run = self.igsp("align", self.cloud("stray.ply", np.vstack([points, stray]), kind=kind), self.target)
+        self.assertRegex(run.stdout, rf"1 of {len(points) + 1} points lies \d+\.\d extents away and was left out")
+
     def test_a_scale_that_is_none_is_refused(self):
         for scale in ("big", "0", "-1", "nan", "1e300"):
             self.assertIn("it must be auto or a factor",
@@ -497,6 +503,15 @@ class BadInput(CommandTest):
                 self.refuses("align", "missing.ply", "missing.ply", flag, path, code=3, saying=path)
             self.refuses("align", "missing.ply", "missing.ply", flag, self.folder, code=3, saying=str(self.folder))
         self.refuses("align", "missing.ply", "missing.ply", "-o", "x.foo", code=3, saying=["x.foo", ".ply"])
+
+    def test_formats_that_the_package_knows_are_named(self):
+        motion = self.file("T.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n")
+        self.file("x.e57", "ASTM-E57")
+        for arguments in [("info", "x.e57"), ("align", "x.e57", self.target), ("convert", self.source, "-o", "y.e57"),
+                          ("transform", "x.e57", "--transform", motion, "-o", "y.e57")]:
+            self.refuses(*arguments, code=3, saying="does not know .e57 files; the same command from pip install 'igsp[e57]'")
+        self.refuses("transform", self.source, "--transform", motion, "-o", "y.las", code=2,
+                     saying="-o y.las: .las is written only from a SOURCE of the same format")
 
     def test_an_output_never_replaces_an_input_or_another_output(self):
         before = self.source.read_bytes()

@@ -131,6 +131,13 @@ class Zsh(ShellTest, unittest.TestCase):
         return text.decode().replace("\r", "")
 
 
+class UnknownShell(unittest.TestCase):
+    def test_the_known_ones_are_named(self):
+        refused = subprocess.run([IGSP, "completion", "tcsh"], capture_output=True, text=True)
+        self.assertEqual(refused.returncode, 2)
+        self.assertEqual(refused.stderr, 'igsp: SHELL is "tcsh"; it must be one of bash, zsh, fish\n')
+
+
 class Manual(unittest.TestCase):
     def test_it_names_every_flag_with_its_help(self):
         page = run(IGSP, "manual")

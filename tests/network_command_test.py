@@ -58,7 +58,7 @@ class NetworkCommand(unittest.TestCase):
     def test_writes_poses_links_and_everything(self):
         run = self.network(*self.scans, "-o", "survey")
         self.assertTrue(run.stdout.startswith("registered 4 of 4 scans: 4 in one frame\n"), run.stdout)
-        self.assertRegex(run.stdout, r"[3-6] of 6 pairs registered, 0 rejected by the network, \d links are unconfirmed "
+        self.assertRegex(run.stdout, r"[3-6] of 6 pairs registered, 0 rejected by the network, \d links? (are|is) unconfirmed "
                                      r"\(in no loop\); bundle error 0\.\d+")
         poses = self.rows("poses.csv")
         self.assertEqual([row["scan"] for row in poses], [str(path) for path in self.scans])
@@ -302,6 +302,33 @@ class NetworkCommand(unittest.TestCase):
         self.refuses(*self.scans, "-o", "survey", "--pairs", "p.csv", code=3, saying="the scan is paired with itself")
         self.refuses(*self.scans, "-o", "survey", "--min-unconfirmed-confidence", "2", code=2,
                      saying="min_unconfirmed_confidence is 2")
+        self.refuses(*self.scans, "-o", "survey", "--max-points", "10", code=2, saying="must be at least 1000")
+        (self.folder / "v.csv").write_text("scan,x,y,z\nstation_0,1,2,nan\n")
+        self.refuses(*self.scans, "-o", "survey", "--viewpoints", "v.csv", code=3,
+                     saying='v.csv: line 2, column 4 (z): "nan" is not a finite number')
+
+    def test_the_engine_of_the_package_is_named(self):
+        pair = [*self.scans[:2], "-o", "survey"]
+        self.refuses(*pair, "--engine", "remote", code=2, saying="it must be local or dask")
+        self.refuses(*pair, "--engine", "dask", code=2, saying="belong together")
+        self.refuses(*pair, "--scheduler", "tcp://127.0.0.1:1", code=2, saying="belong together")
+        self.refuses(*pair, "--engine", "dask", "--scheduler", "tcp://127.0.0.1:1", code=2,
+                     saying="pip install 'igsp[dask]'")
+
+    def test_scans_of_one_name_cannot_be_written_beside_each_other(self):
+        for folder, scan in [("a", self.scans[0]), ("b", self.scans[1])]:
+            (self.folder / folder).mkdir()
+            shutil.copy(scan, self.folder / folder / "scan.ply")
+        self.refuses("a/scan.ply", "b/scan.ply", "-o", "survey", "--write", "moved", code=2,
+                     saying="a/scan.ply and b/scan.ply would be written under one name")
+
+    def test_a_scan_in_millimetres_among_metres_is_warned_of(self):
+        points = self.points_of(self.scans[1]) * 1000
+        np.savetxt(self.folder / "mm.xyz", points, "%.3f")
+        run = self.network(self.scans[0], self.scans[2], "mm.xyz", "-o", "survey", code=1)
+        self.assertIn("1 of 3 pairs registered, 0 rejected by the network, 1 link is unconfirmed (in no loop)", run.stdout)
+        self.assertIn("igsp: warning: mm.xyz: in another unit than the others?", run.stderr)
+        self.assertEqual(self.network(self.scans[0], self.scans[2], "mm.xyz", "-o", "other", "--quiet", code=1).stderr, "")
 
 
 if __name__ == "__main__":

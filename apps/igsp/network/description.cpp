@@ -100,9 +100,9 @@ std::string network_summary(const Network& network) {
   if (number_alone > 0) text += fmt::format("; {} alone ({})", number_alone, alone);
   const std::size_t unconfirmed = count(network, LinkState::unconfirmed),
                     rejected = count(network, LinkState::rejected);
-  text += fmt::format("\n{} of {} pairs registered, {} rejected by the network, {} links are unconfirmed (in no loop)",
+  text += fmt::format("\n{} of {} pairs registered, {} rejected by the network, {} {} unconfirmed (in no loop)",
                       network.links.size() - count(network, LinkState::not_registered), network.links.size(), rejected,
-                      unconfirmed);
+                      unconfirmed, unconfirmed == 1 ? "link is" : "links are");
   if (placed > 0) text += fmt::format("; bundle error {:.3g}", network.bundle_error);
   return text + "\n";
 }
