@@ -16,6 +16,9 @@ IGSP = os.path.abspath(sys.argv.pop(1))
 CHUNK = 65536  # points that the readers hand out at once
 
 
+PLY_TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8"}
+
+
 def rigid(seed: int) -> np.ndarray:
     random = np.random.default_rng(seed)
     rotation, _ = np.linalg.qr(random.normal(size=(3, 3)))
@@ -38,7 +41,7 @@ class CloudTest(unittest.TestCase):
 
     def write_ply(self, name: str, points: np.ndarray, extra: dict[str, np.ndarray] | None = None, kind="f8") -> Path:
         """Binary, x y z of one type and other properties behind them."""
-        names = {"f8": "double", "f4": "float", "u1": "uchar", "u2": "ushort"}
+        names = {read: written for written, read in PLY_TYPES.items()}
         fields = [("x", points[:, 0].astype(kind)), ("y", points[:, 1].astype(kind)), ("z", points[:, 2].astype(kind))]
         fields += list((extra or {}).items())
         table = np.zeros(len(points), [(name, values.dtype) for name, values in fields])
@@ -51,9 +54,8 @@ class CloudTest(unittest.TestCase):
 
     def read_ply(self, name: str) -> np.ndarray:
         header, body = (self.folder / name).read_bytes().split(b"end_header\n", 1)
-        types = {"double": "f8", "float": "f4", "uchar": "u1", "ushort": "u2"}
         words = [line.split() for line in header.decode().splitlines()]
-        return np.frombuffer(body, [(line[2], "<" + types[line[1]]) for line in words if line[0] == "property"])
+        return np.frombuffer(body, [(line[2], "<" + PLY_TYPES[line[1]]) for line in words if line[0] == "property"])
 
     def xyz(self, name: str) -> np.ndarray:
         table = self.read_ply(name)
@@ -140,6 +142,10 @@ class Convert(CloudTest):
         extra = {axis: random.normal(size=count).astype("f4") for axis in ("nx", "ny", "nz")}
         extra |= {colour: random.integers(0, 256, count).astype("u1") for colour in ("red", "green", "blue")}
         extra |= {"intensity": random.integers(0, 65536, count).astype("u2"), "gps_time": random.normal(size=count)}
+        for kind in ("i1", "i2", "i4", "u4"):
+            least, greatest = np.iinfo(kind).min, np.iinfo(kind).max
+            extra[f"label_{kind}"] = random.integers(least, greatest, count, dtype=kind, endpoint=True)
+            extra[f"label_{kind}"][:2] = least, greatest
         self.write_ply("a.ply", random.normal(size=(count, 3)), extra)
         return extra
 
@@ -170,9 +176,10 @@ class Convert(CloudTest):
         self.full_cloud(10)
         self.igsp("convert", "a.ply", "-o", "b.pcd")
         header, body = (self.folder / "b.pcd").read_bytes().split(b"DATA binary\n")
-        self.assertIn(b"FIELDS x y z normal_x normal_y normal_z rgb intensity gps_time\n", header)
-        self.assertIn(b"TYPE F F F F F F F U F\n", header)
-        table = np.frombuffer(body, [("xyz", "<f8", 3), ("n", "<f4", 3), ("rgb", "<u4"), ("i", "<u2"), ("t", "<f8")])
+        self.assertIn(b"FIELDS x y z normal_x normal_y normal_z rgb intensity gps_time label_i1 label_i2 label_i4 label_u4\n", header)
+        self.assertIn(b"TYPE F F F F F F F U F I I I U\n", header)
+        table = np.frombuffer(body, [("xyz", "<f8", 3), ("n", "<f4", 3), ("rgb", "<u4"), ("i", "<u2"), ("t", "<f8"), ("l1", "i1"),
+                                    ("l2", "<i2"), ("l4", "<i4"), ("u4", "<u4")])
         red, green, blue = (self.read_ply("a.ply")[colour].astype("u4") for colour in ("red", "green", "blue"))
         np.testing.assert_array_equal(table["rgb"], red << 16 | green << 8 | blue)
 

@@ -86,6 +86,13 @@ std::string binary_ply(std::endian order, double shift, bool lists, bool doubles
          bytes_of(std::int32_t{1}, order) + "behind all";
 }
 
+TEST(MovedCopy, AsciiPlyWhoseListsComeBeforeTheCoordinates) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty list uchar int seen_by\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n";
+  EXPECT_EQ(moved_content("a.ply", header + "3 7 8 9 1 2 3\n0 0 0 0\n"), header + "3 7 8 9 8 21 33\n0 10 20 30\n");
+}
+
 TEST(MovedCopy, BinaryPlyOfBothByteOrders) {
   for (const std::endian order : {std::endian::little, std::endian::big}) {
     for (const bool lists : {false, true}) {

@@ -52,7 +52,7 @@ TEST(TextReader, TheCountOfPts) {
   EXPECT_EQ(reader.next_chunk().size(), 2u);
   EXPECT_TRUE(reader.next_chunk().empty());
   EXPECT_TRUE(read_content("a.pts", "0\n").points.empty());
-  expect_unreadable("a.pts", "3\n1 2 3 0 0 0\n-4 5.5 6 0 0 0\n", {"line 3", "1 points too early", "truncated"});
+  expect_unreadable("a.pts", "3\n1 2 3 0 0 0\n-4 5.5 6 0 0 0\n", {"line 3: '" + std::string(4, '?') + "'"});
   expect_unreadable("a.pts", "1\n1 2 3\n-4 5.5 6\n", {"line 3", "more points"});
   expect_unreadable("a.pts", "10000000000000000000\n1 2 3\n-4 5.5 6\n", {"byte offset 21", "10000000000000000000"});
 }
@@ -161,6 +161,19 @@ TEST(TextReader, Utf16) {
   std::string long_text;
   for (int i = 0; i < 200000; ++i) long_text += "1.25 2.5 " + std::to_string(i % 7) + ".5\n";
   EXPECT_EQ(read_content("a.xyz", utf16(long_text, false, true)).points, read_content("a.xyz", long_text).points);
+}
+
+// 32,000 letters of two units each, one of which lies across the border of what is read at once; four bytes in UTF-8.
+TEST(TextReader, Utf16OfTwoUnitsALetter) {
+  for (const bool big : {false, true}) {
+    const std::string letter = big ? std::string("\xD8\x3D\xDE\x00", 4) : std::string("\x3D\xD8\x00\xDE", 4);
+    for (const std::string_view start : {"1 2 3\n# ", "1 2 3\n#  "}) {
+      std::string text = utf16(start, big, true);
+      for (int i = 0; i < 32000; ++i) text += letter;
+      EXPECT_EQ(read_content("a.xyz", text + utf16("\n-4 5.5 6\n", big, false)).points, two_points);
+      expect_unreadable("a.xyz", text + utf16("\n-4 5.5 ", big, false) + letter, {"line 3", "\xF0\x9F\x98\x80"});
+    }
+  }
 }
 
 TEST(TextReader, BlocksOfPts) {
