@@ -93,22 +93,31 @@ bool is_nameless_section(std::string_view line) {
   return !(std::isalnum(letter) || std::string_view("_-\"']").find(line[name]) != std::string_view::npos);
 }
 
-// Beyond ASCII outside of comments: no name and no value has that, and the parser's tables of letters have gaps into
-// which it falls. Within quotes neither: what opens them for us may be another fault for the parser.
-bool has_foreign_letter(std::string_view line) {
+// A line without its comment.
+std::string_view statement_of(std::string_view line) {
   char quote = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
-    if (static_cast<unsigned char>(line[i]) > 127) return true;
     if (quote != 0) {
       if (line[i] == quote) quote = 0;
       if (line[i] == '\\' && quote == '"') ++i;
     } else if (line[i] == '#') {
-      return false;
+      return line.substr(0, i);
     } else if (line[i] == '"' || line[i] == '\'') {
       quote = line[i];
     }
   }
-  return false;
+  return line;
+}
+
+// Beyond ASCII: no name and no value has that, and the parser's tables of letters have gaps into which it falls. Within
+// quotes neither: what opens them for us may be another fault for the parser.
+bool has_foreign_letter(std::string_view statement) {
+  return std::ranges::any_of(statement, [](char letter) { return static_cast<unsigned char>(letter) > 127; });
+}
+
+// "a = [}": the parser takes for granted that no bracket closes what none has opened.
+bool has_list(std::string_view statement) {
+  return !statement.starts_with('[') && statement.find_first_of("[]") != std::string_view::npos;
 }
 
 // Strings of several lines, which no option takes: what is inside and what outside shows in no single line.
@@ -129,8 +138,10 @@ void check_lines(std::string_view text, std::string_view name) {
     const auto fail = [&](std::string_view fault) { throw FileError(fmt::format("{}:{}: {}", name, number, fault)); };
     if (is_deep(line)) fail("more than 32 dots: an option is called section.name");
     if (opens_long_string(line)) fail("an option takes no string of several lines");
-    if (has_foreign_letter(line)) fail("letters outside of ASCII belong into comments");
-    if (is_nameless_section(line.substr(first))) fail("a section in brackets needs a name: [section]");
+    const std::string_view statement = statement_of(line.substr(first));
+    if (has_foreign_letter(statement)) fail("letters outside of ASCII belong into comments");
+    if (has_list(statement)) fail("an option takes a single value, no list");
+    if (is_nameless_section(statement)) fail("a section in brackets needs a name: [section]");
   }
 }
 

@@ -66,6 +66,16 @@ TEST(Toml, SectionsWithoutANameAreRefusedBeforeTheParserAborts) {
   EXPECT_EQ(options_from_toml("[ 'energy' ]\np1 = 2.0\n[\"keypoints\"]", "a.toml").energy.p1, 2.0);
 }
 
+TEST(Toml, ListsAreRefusedBeforeTheParserAborts) {
+  for (const std::string_view text : {"preset = [}", "threads = [1, 2]", "a = {b = [}}", "threads = [\n1]"}) {
+    EXPECT_NE(message_of<FileError>(text).find("igsp.toml:1: an option takes a single value, no list"),
+              std::string::npos)
+        << text;
+  }
+  EXPECT_EQ(options_from_toml("threads = 2  # [2]\nkeypoints = {pca_radius = 7.0}", "a.toml").keypoints.pca_radius,
+            7.0);
+}
+
 TEST(Toml, LettersThatTheParserFallsOverAreRefused) {
   for (const std::string_view text :
        {"\xef\xba\xbf# a", "[\xc3\xa4]", "threads = 1\n\xef\xba\xbf = 2", "preset = \"a\\\"\xc3\xa4\" \xc3\xa4",
@@ -131,9 +141,9 @@ TEST(Toml, ValueOutOfRangeNamesLineValueAndRange) {
 }
 
 TEST(Toml, WrongKindOfValueIsAnError) {
-  for (const char* text : {"threads = 1.5", "threads = \"1\"", "search = 1", "search = \"drect\"", "threads = [1]",
-                           "keypoints = 3", "preset = 1", "preset = \"papr\"", "refinement.enabled = 1",
-                           "keypoints.pca_radius = nan", "threads = 2020-01-01", "[search]\na = 1"}) {
+  for (const char* text : {"threads = 1.5", "threads = \"1\"", "search = 1", "search = \"drect\"", "keypoints = 3",
+                           "preset = 1", "preset = \"papr\"", "refinement.enabled = 1", "keypoints.pca_radius = nan",
+                           "threads = 2020-01-01", "[search]\na = 1"}) {
     EXPECT_NE(message_of<InvalidArgument>(text).find("igsp.toml:1:"), std::string::npos) << text;
   }
 }
