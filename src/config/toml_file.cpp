@@ -115,9 +115,17 @@ bool has_foreign_letter(std::string_view statement) {
   return std::ranges::any_of(statement, [](char letter) { return static_cast<unsigned char>(letter) > 127; });
 }
 
-// "a = [}": the parser takes for granted that no bracket closes what none has opened.
-bool has_list(std::string_view statement) {
-  return !statement.starts_with('[') && statement.find_first_of("[]") != std::string_view::npos;
+// "a = [}", "a = 1970-01-01 7 ": lists, tables within a line and dates with a time are values that no option takes, and
+// the parser takes for granted what it has not seen.
+bool has_simple_value(std::string_view statement) {
+  const std::size_t sign = statement.find('=');
+  if (statement.starts_with('[') || sign == std::string_view::npos) return true;
+  std::string_view value = statement.substr(sign + 1);
+  const auto is_blank = [](char letter) { return static_cast<unsigned char>(letter) <= ' '; };
+  while (!value.empty() && is_blank(value.front())) value.remove_prefix(1);
+  while (!value.empty() && is_blank(value.back())) value.remove_suffix(1);
+  if (value.starts_with('"') || value.starts_with('\'')) return true;
+  return std::ranges::none_of(value, is_blank) && value.find_first_of("[]{}") == std::string_view::npos;
 }
 
 // Strings of several lines, which no option takes: what is inside and what outside shows in no single line.
@@ -140,7 +148,7 @@ void check_lines(std::string_view text, std::string_view name) {
     if (opens_long_string(line)) fail("an option takes no string of several lines");
     const std::string_view statement = statement_of(line.substr(first));
     if (has_foreign_letter(statement)) fail("letters outside of ASCII belong into comments");
-    if (has_list(statement)) fail("an option takes a single value, no list");
+    if (!has_simple_value(statement)) fail("an option takes a single value: a number, true, false or a name in quotes");
     if (is_nameless_section(statement)) fail("a section in brackets needs a name: [section]");
   }
 }
