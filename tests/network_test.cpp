@@ -269,6 +269,15 @@ TEST(Network, RefusesWhatItCannotUse) {
   features[0].voxel_size = 1;
   features[1].voxel_size = 2;
   EXPECT_THROW(register_network(std::span<const Features>(features)), InvalidArgument);
+  EXPECT_THROW(align(features[0], features[1]), InvalidArgument);
+  options = {};
+  options.pairs = PairRule::listed;
+  const Points few = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const std::vector<Scan> scans(2, Scan{few});
+  for (const ScanPair& pair : {ScanPair{0, 2}, ScanPair{1, 1}}) {
+    options.listed_pairs = {pair};
+    EXPECT_THROW(register_network(std::span<const Scan>(scans), options), InvalidArgument);
+  }
   const Network nothing = register_network(std::span<const Scan>());
   EXPECT_TRUE(nothing.scans.empty());
   EXPECT_TRUE(nothing.components.empty());

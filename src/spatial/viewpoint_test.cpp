@@ -73,6 +73,9 @@ TEST(HiddenPoints, DegenerateCloudsHideNothing) {
   EXPECT_THROW(hidden_points(Points{}, Vector3d::Zero()), InvalidArgument);
   EXPECT_THROW(hidden_points(Points{Vector3d::Zero()}, nan), InvalidArgument);
   EXPECT_THROW(hidden_points(Points{nan}, Vector3d::Zero()), InvalidArgument);
+  for (const int cells : {0, -1, 1001}) {
+    EXPECT_THROW(hidden_points(Points{{1, 0, 0}}, Vector3d::Zero(), cells), InvalidArgument) << cells;
+  }
 }
 
 TEST(FindViewpoint, WhatIsGivenIsUsedUnlessTheCloudContradicts) {
