@@ -93,20 +93,20 @@ bool is_nameless_section(std::string_view line) {
   return !(std::isalnum(letter) || std::string_view("_-\"']").find(line[name]) != std::string_view::npos);
 }
 
-// A line without its comment.
-std::string_view statement_of(std::string_view line) {
+// Where the letter stands outside of quotes.
+std::size_t find_bare(std::string_view line, char wanted) {
   char quote = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (quote != 0) {
       if (line[i] == quote) quote = 0;
       if (line[i] == '\\' && quote == '"') ++i;
-    } else if (line[i] == '#') {
-      return line.substr(0, i);
+    } else if (line[i] == wanted) {
+      return i;
     } else if (line[i] == '"' || line[i] == '\'') {
       quote = line[i];
     }
   }
-  return line;
+  return std::string_view::npos;
 }
 
 // Beyond ASCII: no name and no value has that, and the parser's tables of letters have gaps into which it falls. Within
@@ -118,7 +118,7 @@ bool has_foreign_letter(std::string_view statement) {
 // "a = [}", "a = 1970-01-01 7 ": lists, tables within a line and dates with a time are values that no option takes, and
 // the parser takes for granted what it has not seen.
 bool has_simple_value(std::string_view statement) {
-  const std::size_t sign = statement.find('=');
+  const std::size_t sign = find_bare(statement, '=');
   if (statement.starts_with('[') || sign == std::string_view::npos) return true;
   std::string_view value = statement.substr(sign + 1);
   const auto is_blank = [](char letter) { return static_cast<unsigned char>(letter) <= ' '; };
@@ -146,7 +146,7 @@ void check_lines(std::string_view text, std::string_view name) {
     const auto fail = [&](std::string_view fault) { throw FileError(fmt::format("{}:{}: {}", name, number, fault)); };
     if (is_deep(line)) fail("more than 32 dots: an option is called section.name");
     if (opens_long_string(line)) fail("an option takes no string of several lines");
-    const std::string_view statement = statement_of(line.substr(first));
+    const std::string_view statement = line.substr(first, find_bare(line, '#') - first);
     if (has_foreign_letter(statement)) fail("letters outside of ASCII belong into comments");
     if (!has_simple_value(statement)) fail("an option takes a single value: a number, true, false or a name in quotes");
     if (is_nameless_section(statement)) fail("a section in brackets needs a name: [section]");

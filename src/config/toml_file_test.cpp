@@ -69,7 +69,7 @@ TEST(Toml, SectionsWithoutANameAreRefusedBeforeTheParserAborts) {
 TEST(Toml, WhatIsNoSingleValueIsRefusedBeforeTheParserAborts) {
   for (const std::string_view text :
        {"preset = [}", "threads = [1, 2]", "a = {b = [}}", "threads = [\n1]", "threads = 7----&---= 7 -",
-        "threads = 1970-01-01 7 ", "keypoints = {pca_radius = 7.0}"}) {
+        "threads = 1970-01-01 7 ", "'='=[[}", "keypoints = {pca_radius = 7.0}"}) {
     EXPECT_NE(message_of<FileError>(text).find("igsp.toml:1: an option takes a single value"), std::string::npos)
         << text;
   }
