@@ -14,9 +14,8 @@ import numpy as np
 
 IGSP = os.path.abspath(sys.argv.pop(1))
 CHUNK = 65536  # points that the readers hand out at once
-
-
-PLY_TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8"}
+PLY_TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4",
+             "double": "f8"}
 
 
 def rigid(seed: int) -> np.ndarray:
