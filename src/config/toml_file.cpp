@@ -77,79 +77,95 @@ void assign_table(Options& options, const toml::table& table, const std::string&
   }
 }
 
-// Every part of a dotted key is a table in the one before; the parser follows them down its stack without a limit.
-bool is_deep(std::string_view line) {
-  constexpr std::ptrdiff_t most_dots = 32;  // options have two parts; numbers and a comment at the end have dots too
-  return std::ranges::count(line, '.') > most_dots;
+// The parser takes for granted what it has not seen, and aborts or does anything on a good deal of what is no TOML. So
+// it is only shown lines of a form that it survives: a section, an option with a single value, a comment.
+
+std::string_view take_while(std::string_view& line, bool (*belongs)(char)) {
+  const std::string_view taken = line.substr(0, std::ranges::find_if_not(line, belongs) - line.begin());
+  line.remove_prefix(taken.size());
+  return taken;
 }
 
-// "[.a]", "[=]": the parser takes for granted that a name begins there, and aborts or does anything where none does.
-bool is_nameless_section(std::string_view line) {
-  if (!line.starts_with('[')) return false;
-  line.remove_prefix(line.starts_with("[[") ? 2 : 1);
-  const std::size_t name = line.find_first_not_of(" \t");
-  if (name == std::string_view::npos) return true;
-  const auto letter = static_cast<unsigned char>(line[name]);
-  return !(std::isalnum(letter) || std::string_view("_-\"']").find(line[name]) != std::string_view::npos);
+bool take(std::string_view& line, char letter) {
+  if (!line.starts_with(letter)) return false;
+  line.remove_prefix(1);
+  return true;
 }
 
-// Where the letter stands outside of quotes.
-std::size_t find_bare(std::string_view line, char wanted) {
-  char quote = 0;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (quote != 0) {
-      if (line[i] == quote) quote = 0;
-      if (line[i] == '\\' && quote == '"') ++i;
-    } else if (line[i] == wanted) {
-      return i;
-    } else if (line[i] == '"' || line[i] == '\'') {
-      quote = line[i];
-    }
+bool is_blank(char letter) {
+  return letter == ' ' || letter == '\t';
+}
+bool is_digit_or_letter(char letter) {
+  return std::isalnum(static_cast<unsigned char>(letter)) != 0;
+}
+bool is_of_name(char letter) {
+  return is_digit_or_letter(letter) || letter == '_' || letter == '-' || letter == '.';
+}
+bool is_of_number(char letter) {
+  return is_of_name(letter) || letter == '+';
+}
+
+bool is_of_quoted(char letter) {
+  const bool is_printable = letter >= ' ' && letter <= '~';
+  return is_printable && letter != '"' && letter != '\'' && letter != '\\';
+}
+
+// Every part of a dotted name is a table in the one before; the parser follows them down its stack without a limit.
+bool take_name(std::string_view& line) {
+  constexpr std::size_t longest = 200;
+  const std::string_view name = take_while(line, is_of_name);
+  return !name.empty() && name.size() <= longest && !name.starts_with('.') && !name.ends_with('.') &&
+         name.find("..") == std::string_view::npos;
+}
+
+// A number, true or false; no date, which has signs elsewhere.
+bool take_bare_value(std::string_view& line) {
+  const std::string_view value = take_while(line, is_of_number);
+  for (std::size_t i = 1; i < value.size(); ++i) {
+    const bool is_sign = value[i] == '+' || value[i] == '-';
+    if (is_sign && value[i - 1] != 'e' && value[i - 1] != 'E') return false;
   }
-  return std::string_view::npos;
+  return !value.empty();
 }
 
-// Beyond ASCII: no name and no value has that, and the parser's tables of letters have gaps into which it falls. Within
-// quotes neither: what opens them for us may be another fault for the parser.
-bool has_foreign_letter(std::string_view statement) {
-  return std::ranges::any_of(statement, [](char letter) { return static_cast<unsigned char>(letter) > 127; });
+bool take_value(std::string_view& line) {
+  for (const char quote : {'"', '\''}) {
+    if (!take(line, quote)) continue;
+    take_while(line, is_of_quoted);
+    return take(line, quote);
+  }
+  return take_bare_value(line);
 }
 
-// "a = [}", "a = 1970-01-01 7 ": lists, tables within a line and dates with a time are values that no option takes, and
-// the parser takes for granted what it has not seen.
-bool has_simple_value(std::string_view statement) {
-  const std::size_t sign = find_bare(statement, '=');
-  if (statement.starts_with('[') || sign == std::string_view::npos) return true;
-  std::string_view value = statement.substr(sign + 1);
-  const auto is_blank = [](char letter) { return static_cast<unsigned char>(letter) <= ' '; };
-  while (!value.empty() && is_blank(value.front())) value.remove_prefix(1);
-  while (!value.empty() && is_blank(value.back())) value.remove_suffix(1);
-  if (value.starts_with('"') || value.starts_with('\'')) return true;
-  return std::ranges::none_of(value, is_blank) && value.find_first_of("[]{}") == std::string_view::npos;
+// What is wrong with a line, or nothing.
+std::string_view fault_of(std::string_view line) {
+  take_while(line, is_blank);
+  if (take(line, '[')) {
+    take_while(line, is_blank);
+    const bool has_name = take_name(line);
+    take_while(line, is_blank);
+    if (!has_name || !take(line, ']')) return "a section has a name in brackets: [section]";
+  } else if (!line.empty() && !line.starts_with('#')) {
+    const bool has_name = take_name(line);
+    take_while(line, is_blank);
+    if (!has_name || !take(line, '=')) return "neither a section in brackets nor name = value";
+    take_while(line, is_blank);
+    if (!take_value(line)) return "an option takes a single value: a number, true, false or a name in quotes";
+  }
+  take_while(line, is_blank);
+  if (line.empty() || line.starts_with('#')) return {};
+  return "more than one section or value in a line";
 }
 
-// Strings of several lines, which no option takes: what is inside and what outside shows in no single line.
-bool opens_long_string(std::string_view line) {
-  return line.find("\"\"\"") != std::string_view::npos || line.find("'''") != std::string_view::npos;
-}
-
-// What the parser itself does not survive.
 void check_lines(std::string_view text, std::string_view name) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   for (std::size_t number = 1; !text.empty(); ++number) {
-    const std::size_t length = std::min(text.find('\n'), text.size());
-    const std::string_view line = text.substr(0, length);
-    text.remove_prefix(std::min(length + 1, text.size()));
-    const std::size_t first = line.find_first_not_of(" \t");
-    if (first == std::string_view::npos || line[first] == '#') continue;
-    const auto fail = [&](std::string_view fault) { throw FileError(fmt::format("{}:{}: {}", name, number, fault)); };
-    if (is_deep(line)) fail("more than 32 dots: an option is called section.name");
-    if (opens_long_string(line)) fail("an option takes no string of several lines");
-    const std::string_view statement = line.substr(first, find_bare(line, '#') - first);
-    if (has_foreign_letter(statement)) fail("letters outside of ASCII belong into comments");
-    if (!has_simple_value(statement)) fail("an option takes a single value: a number, true, false or a name in quotes");
-    if (is_nameless_section(statement)) fail("a section in brackets needs a name: [section]");
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    const std::string_view fault = fault_of(line);
+    if (!fault.empty()) throw FileError(fmt::format("{}:{}: {}", name, number, fault));
   }
 }
 
