@@ -187,15 +187,12 @@ class SideInputs(CommandTest):
 
     def test_options_that_no_one_writes(self):
         depth = 200_000
-        for text, saying in [("a." * depth + "a = 1\n", "dots"), ("[" + "a." * depth + "a]\n", "dots"),
+        for text, saying in [("a." * depth + "a = 1\n", "200 letters"), ("[" + "a." * depth + "a]\n", "200 letters"),
                              ("a = " + "[" * depth + "\n", "igsp.toml"), ("x = 1 # much\n" * 100_000, "more than")]:
             self.file("igsp.toml", text)
             self.refuses("options", "--config", "igsp.toml", code=3, saying=saying)
-        # The deepest that is left to the parser: dotted keys in inline tables in arrays.
-        part = "x" + ".x" * 32
-        self.file("igsp.toml", f"{part} = [\n" + f"{{{part} = [\n" * 120 + "]}" * 120 + "]\n")
-        run = subprocess.run([IGSP, "options", "--config", "igsp.toml"], capture_output=True, text=True, cwd=self.folder)
-        self.assertIn(run.returncode, [2, 3], run.stderr[-300:])
+        self.file("igsp.toml", "".join(f"[{'x.' * 90}x{i}]\n" for i in range(4000)))  # the deepest that the parser sees
+        self.refuses("options", "--config", "igsp.toml", code=2, saying="unknown option")
 
     def test_lists_and_reports_that_no_one_writes(self):
         self.file("long.csv", "name," + "x" * 2_000_000)

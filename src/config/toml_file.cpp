@@ -111,11 +111,10 @@ bool is_of_quoted(char letter) {
 }
 
 // Every part of a dotted name is a table in the one before; the parser follows them down its stack without a limit.
-bool take_name(std::string_view& line) {
-  constexpr std::size_t longest = 200;
-  const std::string_view name = take_while(line, is_of_name);
-  return !name.empty() && name.size() <= longest && !name.starts_with('.') && !name.ends_with('.') &&
-         name.find("..") == std::string_view::npos;
+constexpr std::size_t longest_name = 200;
+
+bool is_name(std::string_view text) {
+  return !text.empty() && !text.starts_with('.') && !text.ends_with('.') && text.find("..") == std::string_view::npos;
 }
 
 // A number, true or false; no date, which has signs elsewhere.
@@ -140,17 +139,17 @@ bool take_value(std::string_view& line) {
 // What is wrong with a line, or nothing.
 std::string_view fault_of(std::string_view line) {
   take_while(line, is_blank);
-  if (take(line, '[')) {
+  if (!line.empty() && !line.starts_with('#')) {
+    const bool is_section = take(line, '[');
     take_while(line, is_blank);
-    const bool has_name = take_name(line);
+    const std::string_view name = take_while(line, is_of_name);
+    if (name.size() > longest_name) return "a name of more than 200 letters; an option is called section.name";
     take_while(line, is_blank);
-    if (!has_name || !take(line, ']')) return "a section has a name in brackets: [section]";
-  } else if (!line.empty() && !line.starts_with('#')) {
-    const bool has_name = take_name(line);
+    if (!is_name(name) || !take(line, is_section ? ']' : '=')) return "neither [section] nor name = value";
     take_while(line, is_blank);
-    if (!has_name || !take(line, '=')) return "neither a section in brackets nor name = value";
-    take_while(line, is_blank);
-    if (!take_value(line)) return "an option takes a single value: a number, true, false or a name in quotes";
+    if (!is_section && !take_value(line)) {
+      return "an option takes a single value: a number, true, false or a name in quotes";
+    }
   }
   take_while(line, is_blank);
   if (line.empty() || line.starts_with('#')) return {};
