@@ -6,9 +6,9 @@
 
 namespace igsp {
 
-/// Turns about the principal axes of a cloud after which it lies on itself again, to a voxel, but for one in a hundred
-/// of its points and one in ten of its keypoints; of each turn and its inverse one: a table turned by half, a stool of
-/// three legs by a third. Most clouds have none. In the coordinates of the cloud.
+/// Turns after which a cloud lies on itself again, to a voxel, but for a few of its points and keypoints and what a
+/// scan has not seen; of each turn and its inverse one: a table turned by half, a stool of three legs by a third, an
+/// empty room. Most clouds have none. In the coordinates of the cloud.
 std::vector<Transformation> turns_onto_itself(const PreparedCloud& cloud);
 
 }  // namespace igsp

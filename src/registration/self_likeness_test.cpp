@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "simulation/random.hpp"
@@ -54,8 +55,7 @@ std::vector<Box> table(double length, double width) {
   return boxes;
 }
 
-std::vector<double> turns_in_degrees(const std::vector<Box>& boxes) {
-  const Features features = features_of(boxes);
+std::vector<double> turns_in_degrees(const Features& features) {
   std::vector<double> degrees;
   for (const Transformation& turn : turns_onto_itself(PreparedCloud(features))) {
     degrees.push_back(Eigen::AngleAxisd(turn.linear()).angle() * 180 / std::numbers::pi);
@@ -63,8 +63,25 @@ std::vector<double> turns_in_degrees(const std::vector<Box>& boxes) {
   return degrees;
 }
 
+std::vector<double> turns_of_boxes(const std::vector<Box>& boxes) {
+  return turns_in_degrees(features_of(boxes));
+}
+
+// The farther from the place, the fewer of its points are left.
+Features seen_from(const Features& features, const Eigen::Vector3d& place) {
+  simulation::Random random(6);
+  Features seen;
+  seen.voxel_size = features.voxel_size;
+  for (std::size_t i = 0; i < features.points.size(); ++i) {
+    if (random.uniform(0, 1) * (features.points[i] - place).norm() > 0.5) continue;
+    seen.points.push_back(features.points[i]);
+    seen.normals.push_back(features.normals[i]);
+  }
+  return seen;
+}
+
 TEST(SelfLikeness, ATableLiesOnItselfAfterHalfATurn) {
-  const std::vector<double> turns = turns_in_degrees(table(1.6, 0.9));
+  const std::vector<double> turns = turns_of_boxes(table(1.6, 0.9));
   ASSERT_EQ(turns.size(), 1u);
   EXPECT_NEAR(turns[0], 180, 2);
 }
@@ -72,19 +89,39 @@ TEST(SelfLikeness, ATableLiesOnItselfAfterHalfATurn) {
 TEST(SelfLikeness, ThreeLegsAfterAThird) {
   std::vector<Box> legs;
   for (int i = 0; i < 3; ++i) legs.push_back({{0.4, 0, 0}, {0.6, 0.12, 0.2}, i * 2 * std::numbers::pi / 3});
-  const std::vector<double> turns = turns_in_degrees(legs);
+  const std::vector<double> turns = turns_of_boxes(legs);
   ASSERT_EQ(turns.size(), 1u);
   EXPECT_NEAR(turns[0], 120, 2);
 }
 
+TEST(SelfLikeness, FiveLegsAfterFifthsAndTurnedOver) {
+  std::vector<Box> legs;
+  for (int i = 0; i < 5; ++i) legs.push_back({{0.4, 0, 0}, {0.6, 0.12, 0.2}, i * 2 * std::numbers::pi / 5});
+  const std::vector<double> turns = turns_of_boxes(legs);
+  ASSERT_FALSE(turns.empty());
+  for (const double turn : turns) EXPECT_NEAR(std::remainder(turn, 36), 0, 2);
+}
+
 TEST(SelfLikeness, ABoxAfterHalfATurnAboutEachOfItsAxes) {
-  EXPECT_EQ(turns_in_degrees({{{0, 0, 0}, {1.5, 0.8, 0.4}}}).size(), 3u);
+  EXPECT_EQ(turns_of_boxes({{{0, 0, 0}, {1.5, 0.8, 0.4}}}).size(), 3u);
 }
 
 TEST(SelfLikeness, ATableWithALampDoesNot) {
   std::vector<Box> boxes = table(1.6, 0.9);
   boxes.push_back({{0.5, 0.2, 1.0}, {0.4, 0.4, 0.6}});
-  EXPECT_TRUE(turns_in_degrees(boxes).empty());
+  EXPECT_TRUE(turns_of_boxes(boxes).empty());
+}
+
+// Its principal axes are tilted and its centroid is not where it turns.
+TEST(SelfLikeness, AnEmptySquareRoomSeenFromACornerDoes) {
+  std::vector<Box> boxes{{{0, 0, 0}, {2, 2, 0.9}}};
+  Features room = features_of(boxes);
+  const std::vector<double> turns = turns_in_degrees(seen_from(room, room.points[0]));
+  ASSERT_FALSE(turns.empty());
+  for (const double turn : turns) EXPECT_NEAR(std::remainder(turn, 90), 0, 1);
+  boxes.push_back({{0.3, 0.85, -0.1}, {0.5, 0.25, 0.7}});  // a wardrobe
+  room = features_of(boxes);
+  EXPECT_TRUE(turns_in_degrees(seen_from(room, room.points[0])).empty());
 }
 
 // Its box is less than a hundredth of the points, and all that there is to recognise.
@@ -101,7 +138,7 @@ TEST(SelfLikeness, AFieldWithABoxDoesNot) {
 }
 
 TEST(SelfLikeness, NothingDoesNot) {
-  EXPECT_TRUE(turns_in_degrees({}).empty());
+  EXPECT_TRUE(turns_of_boxes({}).empty());
 }
 
 }  // namespace
