@@ -73,7 +73,7 @@ Features seen_from(const Features& features, const Eigen::Vector3d& place) {
   Features seen;
   seen.voxel_size = features.voxel_size;
   for (std::size_t i = 0; i < features.points.size(); ++i) {
-    if (random.uniform(0, 1) * (features.points[i] - place).norm() > 0.5) continue;
+    if (random.uniform(0, 1) * (features.points[i] - place).squaredNorm() > 0.2) continue;
     seen.points.push_back(features.points[i]);
     seen.normals.push_back(features.normals[i]);
   }
