@@ -47,7 +47,7 @@ OBJECTS = {
     "square table": (table(0.9, 0.9), 4, False),
     "cross with a post": ([box((0, 0, 0), (1.2, 0.15, 0.1)), box((0, 0, 0), (0.15, 1.2, 0.1)), box((0, 0, 0.4), (0.1, 0.1, 0.7))], 4, False),
     "cube": ([box((0, 0, 0), (0.6, 0.6, 0.6))], 24, False),
-    "stool of 3 legs": ([*legs(3), box((0, 0, 0.3), (0.1, 0.1, 0.4))], 1, False),  # its post has four sides
+    "three legs and a square post": ([*legs(3), box((0, 0, 0.3), (0.1, 0.1, 0.4))], 1, False),
     "three legs": (legs(3), 6, False),
     "five legs": (legs(5), 10, False),
     "square room": (ROOM, 8, True),
