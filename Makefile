@@ -79,12 +79,14 @@ bench-peers:
 	$(peers_python) benchmarks/peers/summary.py
 	$(peers_python) benchmarks/peers/plots.py
 
-# What docs/verdict.md shows: the rows, the numbers, the plots. About ten minutes of one core.
+# What docs/verdict.md shows: the rows, the numbers, the plots. About half an hour of one core.
 calibrate:
 	@scripts/setup.sh python3-matplotlib
 	cmake --preset release -DIGSP_BUILD_BENCHMARKS=ON
 	cmake --build --preset release --target igsp_calibrate
 	build/release/bin/igsp_calibrate --pairs 1000 --jobs $(jobs) --out docs/data/calibration.csv
+	build/release/bin/igsp_calibrate --first 1000 --pairs 1000 --jobs $(jobs) --out docs/data/calibration_second.csv
+	build/release/bin/igsp_calibrate --first 2000 --pairs 1000 --jobs $(jobs) --out docs/data/calibration_third.csv
 	/usr/bin/python3 benchmarks/calibration/reliability.py
 
 # What docs/paper/ shows: the paper's tables and figures, with the real scans in `scans` if they are there. About ten

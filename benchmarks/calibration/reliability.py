@@ -22,9 +22,11 @@ COUNTS = ("right", "has_estimate", "registered", "free_directions", "mutual_matc
 FREE_CONFIDENCE = 0.1  # the verdict's cap where a direction is free
 
 
-def read_rows(path):
-    with open(path, newline="") as file:
-        rows = list(csv.DictReader(file))
+def read_rows(paths):
+    rows = []
+    for path in paths:
+        with path.open(newline="") as file:
+            rows += csv.DictReader(file)
     for row in rows:
         row.update({name: float(row[name]) for name in NUMBERS}, **{name: int(row[name]) for name in COUNTS})
     return rows
@@ -212,7 +214,8 @@ def report_worst(rows):
 def main():
     here = Path(__file__).resolve().parents[2]
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--csv", type=Path, default=here / "docs/data/calibration.csv")
+    thousands = [here / f"docs/data/calibration{name}.csv" for name in ("", "_second", "_third")]
+    parser.add_argument("--csv", type=Path, nargs="+", default=thousands)
     parser.add_argument("--images", type=Path, default=here / "docs/images")
     arguments = parser.parse_args()
 
