@@ -35,15 +35,15 @@ void expect_right_or_refused(const Pair& pair) {
   EXPECT_TRUE(!result.registered || is_right(result, pair)) << result.confidence << ": " << result.reason;
 }
 
-TEST(HardScenes, SquareRoomIsRefusedOrNamesItsRunnerUp) {
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    SCOPED_TRACE(seed);
-    const Pair pair = scrambled_pair("square_room", 20000, seed);
-    const Result result = align(pair.source, pair.target);
-    if (!result.registered) continue;
-    ASSERT_TRUE(result.runner_up) << result.confidence << ": " << result.reason;
-    EXPECT_GT(result.runner_up->share, 0.25) << "named, but played down";
-    EXPECT_NE(result.reason.find("runner-up"), std::string::npos) << result.reason;
+// Whatever the matches say, which see how each cloud is sampled.
+TEST(HardScenes, SquareRoomsAreRefused) {
+  for (const int points : {2000, 20000}) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      SCOPED_TRACE(::testing::Message() << points << " points, seed " << seed);
+      const Pair pair = scrambled_pair("square_room", points, seed);
+      const Result result = align(pair.source, pair.target);
+      EXPECT_FALSE(result.registered) << result.confidence << ": " << result.reason;
+    }
   }
 }
 
