@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "scenes.hpp"
 #include "simulation/random.hpp"
@@ -83,6 +85,43 @@ TEST(HardScenes, ALatticeOnItselfIsRefused) {
   const Result result = align(lattice, lattice);
   EXPECT_FALSE(result.registered) << result.confidence << ": " << result.reason;
   EXPECT_NE(result.reason.find("ambiguous"), std::string::npos) << result.reason;
+}
+
+// A seat and two legs, sampled all around.
+Points bench(int points, std::uint64_t seed) {
+  struct Box {
+    Eigen::Vector3d centre, size;
+  };
+  const std::array<Box, 3> boxes{
+      {{{0, 0, 0.44}, {1.5, 0.4, 0.05}}, {{-0.6, 0, 0.21}, {0.08, 0.36, 0.42}}, {{0.6, 0, 0.21}, {0.08, 0.36, 0.42}}}};
+  constexpr double area = 2.46;  // [m^2]
+  Random random(seed);
+  Points sampled;
+  for (const auto& [centre, size] : boxes) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int i = 0; i < points * 2 * size.prod() / size[axis] / area; ++i) {
+        Eigen::Vector3d place{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5)};
+        place[axis] = std::copysign(0.5, place[axis]);
+        sampled.push_back(centre + place.cwiseProduct(size));
+      }
+    }
+  }
+  return sampled;
+}
+
+// The half does not lie on itself after a turn; the whole does, and so the half fits on either end of it.
+TEST(HardScenes, HalfABenchIsNotRegisteredToTheWhole) {
+  for (const int points : {3000, 12000}) {
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      Points half = bench(points, seed);
+      std::erase_if(half, [](const Eigen::Vector3d& point) { return point.x() < -0.05; });
+      const Pair pair = testing::scrambled({bench(points, 100 + seed), half}, seed);
+      for (const Result& result : {align(pair.source, pair.target), align(pair.target, pair.source)}) {
+        SCOPED_TRACE(::testing::Message() << points << " points, seed " << seed);
+        EXPECT_FALSE(result.registered) << result.confidence << ": " << result.reason;
+      }
+    }
+  }
 }
 
 TEST(HardScenes, RepetitiveCorridorIsNeverWrong) {

@@ -97,19 +97,25 @@ void refine_rivals(ScaleLadder& scales, const SearchOutcome& outcome, const Opti
   weigh(outcome, judgement);
 }
 
-// Where the target lies on itself after a turn the source fits as well turned, whether or not a search came across that
-// pose, and whatever the matches say, which see how the clouds are sampled. Only free space may tell them apart.
+// Where one of the clouds lies on itself after a turn the other fits as well turned, whether or not a search came
+// across that pose, and whatever the matches say, which see how the clouds are sampled. Only free space may tell them
+// apart.
 void add_turned_rivals(ScaleLadder& scales, const SearchOutcome& outcome, const Options& options,
                        Judgement& judgement) {
   constexpr double upright = 0.999;  // cosine of the tilt
   const std::size_t rung = judgement.rung;
-  for (const Transformation& turn : turns_onto_itself(scales.frame(rung).target())) {
-    if (options.degrees_of_freedom == 4 && turn.linear()(2, 2) < upright) continue;
-    const Transformation pose = turn * outcome.target_from_source;
+  const auto add = [&](const Transformation& turn, const Transformation& pose) {
+    if (options.degrees_of_freedom == 4 && turn.linear()(2, 2) < upright) return;
     Rival rival{pose, assess_pose(scales, rung, pose, scales.threads())};
     const double told_apart = judgement.pose.free_space_evidence - rival.assessment.free_space_evidence;
     rival.assessment.quality = std::max(rival.assessment.quality, judgement.pose.quality - std::max(0.0, told_apart));
     judgement.rivals.push_back(rival);
+  };
+  for (const Transformation& turn : turns_onto_itself(scales.frame(rung).target())) {
+    add(turn, turn * outcome.target_from_source);
+  }
+  for (const Transformation& turn : turns_onto_itself(scales.frame(rung).source())) {
+    add(turn, outcome.target_from_source * turn);
   }
   sort_by_quality(judgement.rivals);
   judgement.rivals = distinct_rivals(judgement.rivals, outcome.target_from_source, scales.voxel_size(rung));
