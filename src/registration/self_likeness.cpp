@@ -14,13 +14,14 @@ constexpr std::array<double, 3> likely_turns_rad{std::numbers::pi, 2 * std::numb
 constexpr double least_turn_rad = std::numbers::pi / 6;  // smaller ones are near poses, which the search has seen
 constexpr double same_turn_rad = std::numbers::pi / 36;
 
-// A third of the points near the surface are enough to begin with: the sampling tilts the axes.
-constexpr double roughly_near = 2, roughly_on_itself = 0.35;            // voxels; share of the points, turned
-constexpr std::array<double, 7> settling_radii{6, 5, 4, 3, 2, 1.5, 1};  // voxels
-constexpr std::size_t max_settled = 500;                                // points
-constexpr double near = 0.75, on_itself = 0.96;                         // voxels; share of the points, turned
-constexpr double keypoints_on_itself = 0.9;                             // three boxes on a field are few of its points
-constexpr std::size_t max_asked = 1500;                                 // points
+// What may lie on itself is found with few points: a third of them near the surface are enough to begin with, since the
+// sampling tilts the axes, and nearly all have to lie on it once it has settled there.
+constexpr std::size_t few = 200, many = 1500;                                           // points
+constexpr double roughly_near = 2, likely = 0.35, nearly_near = 1, very_likely = 0.88;  // voxels; shares of the points
+constexpr std::array<double, 4> rough_radii{6, 4, 2.5, 1.5};                           // voxels
+constexpr std::array<double, 3> fine_radii{2, 1.5, 1};                                  // voxels
+constexpr double near = 0.75, on_itself = 0.96;  // voxels; share of the points, turned
+constexpr double keypoints_on_itself = 0.9;      // three boxes on a field are few of its points
 // Of a point from the surface that it lies on: walls have gaps where the scanner saw them from the side.
 constexpr double reach = 4;  // voxels
 
@@ -70,13 +71,9 @@ double share_on_itself(const Transformation& turn, const PreparedCloud& cloud, P
   return asked > 0 ? static_cast<double>(found) / static_cast<double>(asked) : 1.0;
 }
 
-bool may_lie_on_itself_after(const Transformation& turn, const PreparedCloud& cloud) {
-  return share_on_itself(turn, cloud, cloud.features.points, roughly_near, max_settled) >= roughly_on_itself;
-}
-
 bool lies_on_itself_after(const Transformation& turn, const PreparedCloud& cloud) {
-  return share_on_itself(turn, cloud, cloud.features.points, near, max_asked) >= on_itself &&
-         share_on_itself(turn, cloud, cloud.keypoints, near, max_asked) >= keypoints_on_itself;
+  return share_on_itself(turn, cloud, cloud.features.points, near, many) >= on_itself &&
+         share_on_itself(turn, cloud, cloud.keypoints, near, many) >= keypoints_on_itself;
 }
 
 double angle_rad_of(const Transformation& turn) {
@@ -93,16 +90,20 @@ bool is_known(const Transformation& turn, const std::vector<Transformation>& fou
 
 std::vector<Transformation> turns_onto_itself(const PreparedCloud& cloud) {
   std::vector<Transformation> found;
-  if (cloud.features.points.empty()) return found;
+  const Points& points = cloud.features.points;
+  if (points.empty()) return found;
   const Surface surface = surface_of(cloud);
-  const PointToPlaneOptions settling{max_settled, max_settled, settling_radii, 0, cloud.features.voxel_size, 6, 1};
-  for (const Frame& frame : {frame_of_points(cloud.features.points), frame_of_walls(cloud.features)}) {
+  const double v = cloud.features.voxel_size;
+  const PointToPlaneOptions roughly{few, few, rough_radii, 0, v, 6, 1}, finely{many, many, fine_radii, 0, v, 6, 1};
+  for (const Frame& frame : {frame_of_points(points), frame_of_walls(cloud.features)}) {
     for (int axis = 0; axis < 3; ++axis) {
       for (const double angle_rad : likely_turns_rad) {
         Transformation turn = frame.turn(axis, angle_rad);
-        if (!may_lie_on_itself_after(turn, cloud)) continue;
-        turn = refine_point_to_plane(surface, surface, turn, settling);
+        if (share_on_itself(turn, cloud, points, roughly_near, few) < likely) continue;
+        turn = refine_point_to_plane(surface, surface, turn, roughly);
         if (angle_rad_of(turn) < least_turn_rad || is_known(turn, found)) continue;
+        if (share_on_itself(turn, cloud, points, nearly_near, few) < very_likely) continue;
+        turn = refine_point_to_plane(surface, surface, turn, finely);
         if (lies_on_itself_after(turn, cloud)) found.push_back(turn);
       }
     }
