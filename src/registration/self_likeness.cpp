@@ -15,13 +15,14 @@ constexpr double least_turn_rad = std::numbers::pi / 6;  // smaller ones are nea
 constexpr double same_turn_rad = std::numbers::pi / 36;
 
 // What may lie on itself is found with few points: a third of them near the surface are enough to begin with, since the
-// sampling tilts the axes, and nearly all have to lie on it once it has settled there.
-constexpr std::size_t few = 200, many = 1500;                                           // points
-constexpr double roughly_near = 2, likely = 0.35, nearly_near = 1, very_likely = 0.88;  // voxels; shares of the points
-constexpr std::array<double, 4> rough_radii{6, 4, 2.5, 1.5};                           // voxels
-constexpr std::array<double, 3> fine_radii{2, 1.5, 1};                                  // voxels
-constexpr double near = 0.75, on_itself = 0.96;  // voxels; share of the points, turned
-constexpr double keypoints_on_itself = 0.9;      // three boxes on a field are few of its points
+// sampling tilts the axes, and nearly all have to lie on it once the turn has settled.
+constexpr std::size_t few = 200, many = 1500;      // points
+constexpr double roughly_near = 2, likely = 0.35;  // voxels; share of the points, turned
+constexpr double nearly_near = 1, very_likely = 0.88;
+constexpr std::array<double, 4> rough_radii{6, 4, 2.5, 1.5};  // voxels
+constexpr std::array<double, 3> fine_radii{2, 1.5, 1};
+constexpr double near = 0.75, on_itself = 0.96;
+constexpr double keypoints_on_itself = 0.9;  // three boxes on a field are few of its points
 // Of a point from the surface that it lies on: walls have gaps where the scanner saw them from the side.
 constexpr double reach = 4;  // voxels
 
