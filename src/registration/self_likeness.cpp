@@ -19,8 +19,8 @@ constexpr double same_turn_rad = std::numbers::pi / 36;
 constexpr std::size_t few = 200, many = 1500;      // points
 constexpr double roughly_near = 2, likely = 0.35;  // voxels; share of the points, turned
 constexpr double nearly_near = 1, very_likely = 0.88;
-constexpr std::array<double, 4> rough_radii{6, 4, 2.5, 1.5};  // voxels
-constexpr std::array<double, 3> fine_radii{2, 1.5, 1};
+constexpr std::array<double, 4> first_radii{6, 4, 2.5, 1.5};  // voxels
+constexpr std::array<double, 3> last_radii{2, 1.5, 1};
 constexpr double near = 0.75, on_itself = 0.96;
 constexpr double keypoints_on_itself = 0.9;  // three boxes on a field are few of its points
 // Of a point from the surface that it lies on: walls have gaps where the scanner saw them from the side.
@@ -95,7 +95,7 @@ std::vector<Transformation> turns_onto_itself(const PreparedCloud& cloud) {
   if (points.empty()) return found;
   const Surface surface = surface_of(cloud);
   const double v = cloud.features.voxel_size;
-  const PointToPlaneOptions roughly{few, few, rough_radii, 0, v, 6, 1}, finely{many, many, fine_radii, 0, v, 6, 1};
+  const PointToPlaneOptions roughly{few, few, first_radii, 0, v, 6, 1}, finely{many, many, last_radii, 0, v, 6, 1};
   for (const Frame& frame : {frame_of_points(points), frame_of_walls(cloud.features)}) {
     for (int axis = 0; axis < 3; ++axis) {
       for (const double angle_rad : likely_turns_rad) {
