@@ -102,6 +102,7 @@ TEST(Toml, CommentsAndBlanksMayStandAnywhere) {
   EXPECT_EQ(options.threads, 2);
   EXPECT_EQ(options.search, Search::direct);
   EXPECT_EQ(options.energy.p1, 0.2);
+  EXPECT_NO_THROW(options_from_toml("# " + std::string(400000, '.') + "\nthreads = 1\n", "text"));
 }
 
 TEST(Toml, AnyRealValuesReadBackExactly) {
