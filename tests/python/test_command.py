@@ -162,6 +162,22 @@ def test_ctrl_c_ends_with_130_and_leaves_no_file(pip_command, laz, scans, tmp_pa
     os.close(reader)
 
 
+def test_an_interrupt_within_a_destructor_is_told_once():
+    within = (
+        "import igsp.__main__ as command\n"
+        "class Destroyed:\n"
+        "    def __init__(self, error): self.error = error\n"
+        "    def __del__(self): raise self.error\n"
+        "def run(arguments, formats):\n"
+        "    for error in KeyboardInterrupt(), ValueError('of a destructor'): Destroyed(error)\n"
+        "    return 0\n"
+        "command._core.run_command_line = run\n"
+        "command.main()"
+    )
+    said = run(sys.executable, "-c", within).stderr
+    assert "ValueError: of a destructor" in said and "KeyboardInterrupt" not in said
+
+
 def test_a_pipe_that_closes_early_is_no_error(pip_command):
     done = run("bash", "-c", f"{pip_command} options | head -1; echo ${{PIPESTATUS[0]}}")
     assert done.stdout.startswith("# Options of igsp") and done.stderr == ""
