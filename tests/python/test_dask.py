@@ -28,7 +28,7 @@ class Processes:
     def __init__(self, folder):
         self.folder, self.file, self.all = folder, folder / "scheduler.json", []
         self.start("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", self.file)
-        wait_for(self.file.exists)
+        wait_for(lambda: self.file.exists() and self.file.read_text().endswith("}"))  # it is made before it is filled
         self.address = json.loads(self.file.read_text())["address"]
         self.client = distributed.Client(self.address, set_as_default=False)
 
