@@ -70,14 +70,19 @@ void weigh(const SearchOutcome& outcome, Judgement& judgement) {
   }
 }
 
-Judgement judgement_at(ScaleLadder& scales, std::size_t rung, const SearchOutcome& outcome) {
+Judgement judgement_of(const PoseAssessment& pose, ScaleLadder& scales, std::size_t rung,
+                       const SearchOutcome& outcome) {
   Judgement judgement;
   judgement.rung = rung;
-  judgement.pose = assess_pose(scales, rung, outcome.target_from_source, scales.threads());
+  judgement.pose = pose;
   judgement.free_directions = free_directions_at(scales, rung, outcome.target_from_source);
   judgement.rivals = rivals_at(scales, rung, outcome);
   weigh(outcome, judgement);
   return judgement;
+}
+
+Judgement judgement_at(ScaleLadder& scales, std::size_t rung, const SearchOutcome& outcome) {
+  return judgement_of(assess_pose(scales, rung, outcome.target_from_source, scales.threads()), scales, rung, outcome);
 }
 
 // The answer has been refined since the poses were ranked; those that came near it get the same chance.
@@ -129,7 +134,10 @@ Judgement most_confident(ScaleLadder& scales, const SearchOutcome& outcome) {
   Judgement judgement = judgement_at(scales, outcome.rung, outcome);
   for (std::size_t rung = outcome.finest_rung; rung < rungs && judgement.confidence < 0.5; ++rung) {
     if (rung == outcome.rung) continue;
-    Judgement other = judgement_at(scales, rung, outcome);
+    const PoseAssessment pose = assess_pose(scales, rung, outcome.target_from_source, scales.threads());
+    // Rivals and free directions, which cost most, only lower it.
+    if (confidence_of(pose, outcome.contradiction) <= judgement.confidence) continue;
+    Judgement other = judgement_of(pose, scales, rung, outcome);
     if (other.confidence > judgement.confidence) judgement = std::move(other);
   }
   return judgement;
