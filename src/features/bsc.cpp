@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/multiversion.hpp"
 #include "core/parallel.hpp"
@@ -142,11 +143,20 @@ std::uint64_t packed(const std::array<std::uint8_t, size>& flags) {
   return result;
 }
 
+// Unrolled, so that cells are addresses: vectors would have to gather them.
+template <typename Visit>
+inline __attribute__((always_inline)) void for_each_pair(const Visit& visit) {
+  [&]<int... k>(std::integer_sequence<int, k...>) {
+    (visit(k, pair_table[k]), ...);
+  }
+  (std::make_integer_sequence<int, pairs>());
+}
+
 // bit = |delta - mean| > sigma over the plane's pairs, without division: |n delta - sum| > sqrt(n sum2 - sum^2). Values
 // stay below 2^20 (38.5 units of density, all weight in one cell), so that n delta - sum fits.
 IGSP_MULTIVERSION std::uint64_t comparison_bits(const std::int32_t* value) {
   std::int32_t delta[pairs];
-  for (int k = 0; k < pairs; ++k) delta[k] = value[pair_table[k].p] - value[pair_table[k].q];
+  for_each_pair([&](int k, Pair pair) { delta[k] = value[pair.p] - value[pair.q]; });
   std::int32_t sum = 0;
   std::int64_t sum2 = 0;
   for (int k = 0; k < pairs; ++k) {
@@ -176,18 +186,22 @@ IGSP_MULTIVERSION void describe_plane(const CellSums& sums, int plane, std::size
                                             steps_per_unit);
   }
   std::array<std::uint8_t, pairs> some;
-  for (int k = 0; k < pairs; ++k) some[k] = (sums.weight[pair_table[k].p] | sums.weight[pair_table[k].q]) != 0;
+  for_each_pair([&](int k, Pair pair) { some[k] = (sums.weight[pair.p] | sums.weight[pair.q]) != 0; });
   append_bits(descriptor, plane * cells, packed(occupied));
   append_bits(descriptor, depth_begin + plane * pairs, comparison_bits(depth));
   append_bits(descriptor, density_begin + plane * pairs, comparison_bits(density) & packed(some));
 }
 
-IGSP_MULTIVERSION void project(const SupportView& support, const Eigen::Matrix3f& to_cells, std::vector<float>& a,
-                               std::vector<float>& b, std::vector<float>& c) {
+// A support's coordinates along the axes of a frame, in cells.
+struct Projected {
+  std::vector<float> a, b, c;
+};
+
+IGSP_MULTIVERSION void project(const SupportView& support, const Eigen::Matrix3f& to_cells, Projected& projected) {
   const std::size_t size = support.size;
-  a.resize(size), b.resize(size), c.resize(size);
+  projected.a.resize(size), projected.b.resize(size), projected.c.resize(size);
   const float *x = support.x, *y = support.y, *z = support.z;
-  float *pa = a.data(), *pb = b.data(), *pc = c.data();
+  float *pa = projected.a.data(), *pb = projected.b.data(), *pc = projected.c.data();
   const float m00 = to_cells(0, 0), m01 = to_cells(0, 1), m02 = to_cells(0, 2);
   const float m10 = to_cells(1, 0), m11 = to_cells(1, 1), m12 = to_cells(1, 2);
   const float m20 = to_cells(2, 0), m21 = to_cells(2, 1), m22 = to_cells(2, 2);
@@ -199,22 +213,28 @@ IGSP_MULTIVERSION void project(const SupportView& support, const Eigen::Matrix3f
   }
 }
 
-}  // namespace
-
-Descriptor binary_shape_context(const SupportView& support, const Eigen::Matrix3d& frame, double descriptor_radius) {
+// `projected`: memory that the next one may use again.
+Descriptor describe(const SupportView& support, const Eigen::Matrix3d& frame, double descriptor_radius,
+                    Projected& projected) {
   Descriptor descriptor{};
   if (support.size == 0) return descriptor;
   const double u = 2 * descriptor_radius / side;
-  std::vector<float> a, b, c;
-  project(support, (frame.transpose() / u).cast<float>(), a, b, c);
+  project(support, (frame.transpose() / u).cast<float>(), projected);
   std::array<Patches, planes> patches{};
-  accumulate(a.data(), b.data(), c.data(), support.size, patches);
+  accumulate(projected.a.data(), projected.b.data(), projected.c.data(), support.size, patches);
   for (int plane = 0; plane < planes; ++plane) {
     CellSums sums;
     sum_patches(patches[plane], sums);
     describe_plane(sums, plane, support.size, descriptor);
   }
   return descriptor;
+}
+
+}  // namespace
+
+Descriptor binary_shape_context(const SupportView& support, const Eigen::Matrix3d& frame, double descriptor_radius) {
+  Projected projected;
+  return describe(support, frame, descriptor_radius, projected);
 }
 
 Descriptor flipped(const Descriptor& descriptor, int frame_flip) {
@@ -238,12 +258,18 @@ std::vector<Descriptor> sign_variants(std::span<const Descriptor> descriptors, i
   return result;
 }
 
-std::vector<Descriptor> describe_in_frame(const SupportTable& supports, const Eigen::Matrix3d& frame,
-                                          double descriptor_radius, int threads) {
-  std::vector<Descriptor> descriptors(supports.size());
-  parallel_blocks(supports.size(), threads, 32, [&](std::size_t begin, std::size_t end) {
+std::vector<std::vector<Descriptor>> describe_in_frames(const SupportTable& supports,
+                                                        std::span<const Eigen::Matrix3d> frames,
+                                                        double descriptor_radius, int threads) {
+  std::vector descriptors(frames.size(), std::vector<Descriptor>(supports.size()));
+  const std::size_t grain = std::max<std::size_t>(1, 32 / std::max<std::size_t>(1, frames.size()));
+  parallel_blocks(supports.size(), threads, grain, [&](std::size_t begin, std::size_t end) {
+    Projected projected;
+    // All frames of a support while it is in the cache.
     for (std::size_t i = begin; i < end; ++i) {
-      descriptors[i] = binary_shape_context(supports[i], frame, descriptor_radius);
+      for (std::size_t k = 0; k < frames.size(); ++k) {
+        descriptors[k][i] = describe(supports[i], frames[k], descriptor_radius, projected);
+      }
     }
   });
   return descriptors;

@@ -20,8 +20,9 @@ Descriptor flipped(const Descriptor& descriptor, int frame_flip);
 /// The variants of every descriptor, row-major (descriptors x variants): flips 0..3, or 0..1 for levelled frames.
 std::vector<Descriptor> sign_variants(std::span<const Descriptor> descriptors, int variants);
 
-/// Descriptors of many places in one common frame: no local frame takes part.
-std::vector<Descriptor> describe_in_frame(const SupportTable& supports, const Eigen::Matrix3d& frame,
-                                          double descriptor_radius, int threads);
+/// Descriptors of many places, result[frame][place], each frame being common to all of them: no local one takes part.
+std::vector<std::vector<Descriptor>> describe_in_frames(const SupportTable& supports,
+                                                        std::span<const Eigen::Matrix3d> frames,
+                                                        double descriptor_radius, int threads);
 
 }  // namespace igsp

@@ -317,7 +317,7 @@ TEST(Bsc, TellsOneSurfaceFromAnother) {
 
 // --- Many places ---
 
-TEST(Bsc, InACommonFrameIsTheSameForEveryThreadCount) {
+TEST(Bsc, InCommonFramesIsTheSameForEveryThreadCount) {
   Random random(10);
   const testing::BumpySurface shape(random);
   const Points points = shape.sample(random, 8000, 6);
@@ -325,14 +325,19 @@ TEST(Bsc, InACommonFrameIsTheSameForEveryThreadCount) {
   const Points places(points.begin(), points.begin() + 200);
   const SupportTable supports = gather_supports(grid, places, radius);
   ASSERT_EQ(supports.size(), places.size());
-  const Eigen::Matrix3d frame = random.rotation();
-  const std::vector<Descriptor> one = describe_in_frame(supports, frame, radius, 1);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    Support support;
-    gather_support(grid, places[i], radius, support);
-    EXPECT_EQ(one[i], binary_shape_context(support, frame, radius));
+  const std::vector<Eigen::Matrix3d> frames{random.rotation(), random.rotation(), random.rotation()};
+  const auto found = describe_in_frames(supports, frames, radius, 1);
+  ASSERT_EQ(found.size(), frames.size());
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    ASSERT_EQ(found[k].size(), places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      Support support;
+      gather_support(grid, places[i], radius, support);
+      EXPECT_EQ(found[k][i], binary_shape_context(support, frames[k], radius));
+    }
   }
-  for (const int threads : {0, 2, 4}) EXPECT_EQ(describe_in_frame(supports, frame, radius, threads), one);
+  for (const int threads : {0, 2, 4}) EXPECT_EQ(describe_in_frames(supports, frames, radius, threads), found);
+  EXPECT_TRUE(describe_in_frames(supports, {}, radius, 1).empty());
 }
 
 TEST(Support, HoldsThePointsWithinItsReach) {

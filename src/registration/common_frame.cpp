@@ -71,26 +71,46 @@ CommonFrame::CommonFrame(const PreparedCloud& source, const PreparedCloud& targe
 
 void CommonFrame::describe(std::span<const Transformation> target_from_source) {
   target_descriptors();
-  for (const Transformation& pose : target_from_source) source_descriptors(pose.linear());
+  std::vector<Eigen::Matrix3d> rotations;
+  for (const Transformation& pose : target_from_source) rotations.push_back(pose.linear());
+  describe_source(rotations);
 }
 
 const std::vector<Descriptor>& CommonFrame::target_descriptors() {
   if (!target_descriptors_) {
     const SupportTable supports = gather_supports(target_.grid, target_.keypoints, descriptor_radius_);
-    target_descriptors_ = describe_in_frame(supports, Eigen::Matrix3d::Identity(), descriptor_radius_, threads_);
+    const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+    target_descriptors_ = std::move(describe_in_frames(supports, {&axes, 1}, descriptor_radius_, threads_).front());
   }
   return *target_descriptors_;
 }
 
 const std::vector<Descriptor>& CommonFrame::source_descriptors(const Eigen::Matrix3d& target_from_source) {
-  for (const Cached& cached : cache_) {
-    if (rotation_error_rad(cached.rotation, target_from_source) < reuse_angle_rad) return cached.descriptors;
-  }
-  if (!source_supports_) source_supports_ = gather_supports(source_.grid, source_.keypoints, descriptor_radius_);
-  // The target's axes, seen in the source: the columns of R^T.
-  cache_.push_back({target_from_source, describe_in_frame(*source_supports_, target_from_source.transpose(),
-                                                          descriptor_radius_, threads_)});
+  if (const std::vector<Descriptor>* descriptors = known(target_from_source)) return *descriptors;
+  describe_source({&target_from_source, 1});
   return cache_.back().descriptors;
+}
+
+const std::vector<Descriptor>* CommonFrame::known(const Eigen::Matrix3d& target_from_source) const {
+  for (const Cached& cached : cache_) {
+    if (rotation_error_rad(cached.rotation, target_from_source) < reuse_angle_rad) return &cached.descriptors;
+  }
+  return nullptr;
+}
+
+void CommonFrame::describe_source(std::span<const Eigen::Matrix3d> target_from_source) {
+  const std::size_t before = cache_.size();
+  for (const Eigen::Matrix3d& rotation : target_from_source) {
+    if (known(rotation) == nullptr) cache_.push_back({rotation, {}});
+  }
+  if (cache_.size() == before) return;
+  if (!source_supports_) source_supports_ = gather_supports(source_.grid, source_.keypoints, descriptor_radius_);
+  std::vector<Eigen::Matrix3d> frames;
+  // The target's axes, seen in the source: the columns of R^T.
+  for (std::size_t i = before; i < cache_.size(); ++i) frames.push_back(cache_[i].rotation.transpose());
+  std::vector<std::vector<Descriptor>> found =
+      describe_in_frames(*source_supports_, frames, descriptor_radius_, threads_);
+  for (std::size_t i = 0; i < found.size(); ++i) cache_[before + i].descriptors = std::move(found[i]);
 }
 
 std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d& target_from_source, int threads) {

@@ -35,6 +35,9 @@ class CommonFrame {
     Eigen::Matrix3d rotation;
     std::vector<Descriptor> descriptors;
   };
+  const std::vector<Descriptor>* known(const Eigen::Matrix3d& target_from_source) const;
+  void describe_source(std::span<const Eigen::Matrix3d> target_from_source);
+
   const PreparedCloud& source_;
   const PreparedCloud& target_;
   double descriptor_radius_;
