@@ -123,7 +123,7 @@ MUTANTS = [
     ("registration/free_space.cpp", "(as_little + 1)", "1", "worth by the proposals contradicted as little"),
     ("registration/free_space.cpp", "beside_surface * growth *", "beside_surface *", "what is beside a surface grows with the aperture"),
     ("registration/pose_assessment.cpp", "(pose.contact() - crossing) / (lying - crossing)", "1.0", "free space confirms no crossing surfaces"),
-    ("registration/range_image.cpp", " || window.is_a_line()", "", "one scan line is not all about a direction"),
+    ("registration/range_image.cpp", " || seen.is_a_line()", "", "one scan line is not all about a direction"),
     ("registration/range_image.cpp", "most_growth = 8", "most_growth = 1", "the aperture grows"),
     ("registration/range_image.cpp", "growth * tolerance_", "tolerance_", "tolerance grows with the aperture"),
     ("registration/common_frame.cpp", "fit_from(hypothesis, voxel_size, degrees_of_freedom, best);", "", "fit in place"),
@@ -144,7 +144,7 @@ MUTANTS = [
     ("registration/precision.cpp", "std::sqrt(pose.residual_variance)", "pose.residual_variance", "root of the mean square"),
     ("registration/verdict.cpp", "at_v.lying() < lying_on_it &&", "", "lines that lie beside each other are not coarse"),
     ("estimation/robust_fit.cpp", "squaredNorm(), scale * scale)", "squaredNorm(), scale)", "scale of the robust weight"),
-    ("registration/common_frame.cpp", "describe_in_frame(*source_supports_, target_from_source.transpose(),", "describe_in_frame(*source_supports_, target_from_source,", "the common frame, seen in the source"),
+    ("registration/common_frame.cpp", "frames.push_back(cache_[i].rotation.transpose());", "frames.push_back(cache_[i].rotation);", "the common frame, seen in the source"),
     # Many scans
     ("network/pose_equations.cpp", "-transport(Transformation::Identity()", "transport(Transformation::Identity()", "pose graph: the target's side"),
     ("network/pose_equations.cpp", "solver.solve(-gradient_)", "solver.solve(gradient_)", "pose graph: direction of a step"),

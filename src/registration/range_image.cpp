@@ -1,9 +1,12 @@
 #include "registration/range_image.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
+#include "core/multiversion.hpp"
 #include "spatial/direction_image.hpp"
 
 namespace igsp {
@@ -18,34 +21,92 @@ constexpr double line = 0.05;       // one variance of the other
 constexpr int min_seen = 3;         // points in the aperture
 constexpr double max_offset = 0.5;  // of their mean from the direction, in apertures: a half disc has 0.42, a rim more
 
-// What was seen within an aperture about a direction. In which order Eigen sums up three floats depends on the
-// processor, that of doubles does not.
+// Four points at a time; generic vectors, which the compiler lowers to what the machine has. Which point goes to which
+// lane, and so every rounding, is the same everywhere.
+constexpr int lanes = 4;
+using Floats = float __attribute__((vector_size(4 * lanes)));
+using Doubles = double __attribute__((vector_size(8 * lanes)));
+using Bits = std::int64_t __attribute__((vector_size(8 * lanes)));
+
+// What was seen within an aperture about a direction: sums over the lanes.
 struct Window {
-  int seen = 0;
-  double nearest = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero(), products = Eigen::Vector3d::Zero();
+  Bits seen{};
+  Doubles nearest = Doubles{} + std::numeric_limits<double>::infinity();
+  std::array<Doubles, 3> sum{}, squares{}, products{};
+};
 
-  void add(const Eigen::Vector3d& offset, double range) {
-    ++seen;
-    nearest = std::min(nearest, range);
-    sum += offset;
-    squares += offset.cwiseAbs2();
-    products += Eigen::Vector3d(offset.y() * offset.z(), offset.z() * offset.x(), offset.x() * offset.y());
+template <typename Vector>
+auto total(const Vector& v) {
+  return v[0] + v[1] + (v[2] + v[3]);
+}
+double least(const Doubles& v) {
+  return std::min(std::min(v[0], v[1]), std::min(v[2], v[3]));
+}
+
+struct Seen {
+  int points = 0;
+  double nearest = 0;
+  Eigen::Vector3d mean, squares, products;  // of the offsets from the direction, of yz, zx and xy
+
+  explicit Seen(const Window& window) : points(static_cast<int>(total(window.seen))), nearest(least(window.nearest)) {
+    for (int axis = 0; axis < 3; ++axis) {
+      mean[axis] = total(window.sum[axis]) / points;
+      squares[axis] = total(window.squares[axis]) / points;
+      products[axis] = total(window.products[axis]) / points;
+    }
   }
-
-  double offset() const { return sum.norm() / seen; }
 
   // Of the two variances across the line of sight, from their sum and their product: the third one is next to nothing.
   bool is_a_line() const {
-    const Eigen::Vector3d mean = sum / seen, variance = squares / seen - mean.cwiseAbs2();
+    const Eigen::Vector3d variance = squares - mean.cwiseAbs2();
     const Eigen::Vector3d covariance =
-        products / seen - Eigen::Vector3d(mean.y() * mean.z(), mean.z() * mean.x(), mean.x() * mean.y());
+        products - Eigen::Vector3d(mean.y() * mean.z(), mean.z() * mean.x(), mean.x() * mean.y());
     const double product = variance.y() * variance.z() + variance.z() * variance.x() + variance.x() * variance.y() -
                            covariance.squaredNorm();
-    const double total = variance.sum();
-    return product < line / ((1 + line) * (1 + line)) * total * total;
+    const double sum = variance.sum();
+    return product < line / ((1 + line) * (1 + line)) * sum * sum;
   }
 };
+
+template <typename Vector, typename Value>
+inline __attribute__((always_inline)) void load(Vector& vector, const Value* values, int count) {
+  if (count == lanes) {
+    std::memcpy(&vector, values, sizeof vector);
+  } else {
+    vector = Vector{};
+    for (int i = 0; i < count; ++i) vector[i] = values[i];
+  }
+}
+
+inline __attribute__((always_inline)) void keep(Doubles& value, const Bits& mask) {
+  value = reinterpret_cast<Doubles>(reinterpret_cast<Bits>(value) & mask);
+}
+
+// A run of the grid's points: those within the aperture join the window.
+IGSP_MULTIVERSION void look_at_run(const float* x, const float* y, const float* z, const double* ranges, int size,
+                                   const std::array<float, 3>& direction, float squared_aperture, Window& window) {
+  const Bits numbers{0, 1, 2, 3};
+  for (int first = 0; first < size; first += lanes) {
+    const int count = std::min(lanes, size - first);
+    Floats dx, dy, dz;
+    Doubles range;
+    load(dx, x + first, count), load(dy, y + first, count), load(dz, z + first, count);
+    load(range, ranges + first, count);
+    dx -= direction[0], dy -= direction[1], dz -= direction[2];
+    const Floats squared = dx * dx + dy * dy + dz * dz;
+    const Bits inside = __builtin_convertvector(squared <= squared_aperture, Bits) & (numbers < count);
+    Doubles px = __builtin_convertvector(dx, Doubles), py = __builtin_convertvector(dy, Doubles),
+            pz = __builtin_convertvector(dz, Doubles);
+    keep(px, inside), keep(py, inside), keep(pz, inside);
+    window.seen -= inside;  // -1 each
+    const Bits nearer = inside & (range < window.nearest);
+    keep(range, nearer), keep(window.nearest, ~nearer);
+    window.nearest = reinterpret_cast<Doubles>(reinterpret_cast<Bits>(range) | reinterpret_cast<Bits>(window.nearest));
+    window.sum[0] += px, window.sum[1] += py, window.sum[2] += pz;
+    window.squares[0] += px * px, window.squares[1] += py * py, window.squares[2] += pz * pz;
+    window.products[0] += py * pz, window.products[1] += pz * px, window.products[2] += px * py;
+  }
+}
 
 double largest_distance(PointView points, const Eigen::Vector3d& from) {
   double squared = 0;
@@ -98,14 +159,16 @@ RangeImage::Look RangeImage::look_at(const Eigen::Vector3d& point) const {
   if (!(range > 0)) return {Sight::out_of_view, 1};
   const Eigen::Vector3f direction = on_sphere(ray, range).cast<float>();
   for (double growth = 1; growth <= most_growth; growth *= 2) {
+    const float reach = static_cast<float>(growth * aperture_);
     Window window;
-    projected_.visit_sphere(direction, static_cast<float>(growth * aperture_), [&](std::uint32_t i, float) {
-      const Eigen::Vector3f offset = Eigen::Vector3f(projected_.x[i], projected_.y[i], projected_.z[i]) - direction;
-      window.add(offset.cast<double>(), ranges_[i]);
+    projected_.visit_runs(direction, reach, [&](std::uint32_t begin, std::uint32_t end) {
+      look_at_run(&projected_.x[begin], &projected_.y[begin], &projected_.z[begin], &ranges_[begin],
+                  static_cast<int>(end - begin), {direction.x(), direction.y(), direction.z()}, reach * reach, window);
     });
-    if (window.seen < min_seen || window.is_a_line()) continue;
-    if (window.offset() > max_offset * growth * aperture_) break;
-    return {range < window.nearest - growth * tolerance_ ? Sight::empty : Sight::possible, growth};
+    const Seen seen(window);
+    if (seen.points < min_seen || seen.is_a_line()) continue;
+    if (seen.mean.norm() > max_offset * growth * aperture_) break;
+    return {range < seen.nearest - growth * tolerance_ ? Sight::empty : Sight::possible, growth};
   }
   return {Sight::out_of_view, 1};
 }
