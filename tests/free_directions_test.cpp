@@ -84,20 +84,6 @@ TEST_P(FreeDirections, Corridor) {
   expect_named(result, {translation_along(scene.target_from_world.linear() * Vector3d::UnitX())});
 }
 
-// In one direction and of one cloud the contact changes a little more than in a corridor without doors.
-TEST(FreeDirectionsBetweenEqualDoors, AreThoseOfTheCorridor) {
-  for (const auto& [seed, points] : {std::pair{28, 20000}, {30, 20000}, {40, 40000}, {62, 20000}}) {
-    SCOPED_TRACE(seed);
-    SimulationOptions options;
-    options.points = points;
-    options.seed = seed;
-    const std::vector<SimulatedScan> scans = simulate("repetitive_corridor", options);
-    const Result result = align(scans[0].points, scans[1].points);
-    expect_named(result, {translation_along(scans[1].world_from_scanner.linear().transpose() * Vector3d::UnitX())});
-    EXPECT_LE(result.confidence, 0.1);
-  }
-}
-
 TEST_P(FreeDirections, OfTheExchangedCorridorInTheOtherFrame) {
   const Scene scene = make_scene("corridor", GetParam());
   const Result result = align(scene.pair.target, scene.pair.source);

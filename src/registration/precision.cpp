@@ -24,8 +24,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 constexpr double well_fixed = 0.7;
 constexpr double loosest = 0.15;             // where no direction lies below, none of them is free
 constexpr double trial_motion = 8.0;         // voxels
-constexpr double unchanged_contact = 0.975;  // corridors, planes: 0.98 and more; others: few parks above 0.95, ...
-constexpr double least_contact = 0.95;       // ... to either side and of either cloud, where a few doors may stand open
+constexpr double unchanged_contact = 0.975;  // corridors, planes: 0.98 and more; others: few parks above 0.95
 constexpr double hardly_seen = 0.02;         // bodies of revolution: 0.005 to 0.016, which is next to proof, ...
 constexpr double similar_contact = 0.95;     // ... so a pose that is a little off may touch a little less
 constexpr double search_radius = 1.5;        // voxels
@@ -143,17 +142,10 @@ std::vector<FreeDirection> free_directions(const PreparedCloud& moved, const Pre
   if (solver.eigenvalues()[0] > loosest * loosest) return {};
 
   const double contact = surface_contact(moved, fixed, fixed_from_moved).share;
-  const auto still_touches = [&](const Vector6& motion, double mean_share) {
-    double sum = 0;
-    for (const double way : {trial_motion * v, -trial_motion * v}) {
-      const Transformation tried = motion_about(at_pose.centre, way * motion, size) * fixed_from_moved;
-      for (const double share :
-           {surface_contact(moved, fixed, tried).share, surface_contact(fixed, moved, tried.inverse()).share}) {
-        if (share <= least_contact * contact) return false;
-        sum += share;
-      }
-    }
-    return sum > 4 * mean_share * contact;
+  const auto still_touches = [&](const Vector6& motion, double share) {
+    const Transformation tried = motion_about(at_pose.centre, motion, size) * fixed_from_moved;
+    return surface_contact(moved, fixed, tried).share > share * contact &&
+           surface_contact(fixed, moved, tried.inverse()).share > share * contact;
   };
   // Where few voxels lie across a body, a trial motion of several leaves it, whatever its axis.
   const auto is_unevenness = [&](const Vector6& motion, double seen) {
@@ -171,7 +163,8 @@ std::vector<FreeDirection> free_directions(const PreparedCloud& moved, const Pre
     const double seen = std::sqrt(std::max(0.0, solver.eigenvalues()[i]));
     if (seen >= well_fixed) return false;
     const double share = seen < hardly_seen ? similar_contact : unchanged_contact;
-    return is_unevenness(motion, seen) || still_touches(motion, share);
+    return is_unevenness(motion, seen) ||
+           (still_touches(trial_motion * v * motion, share) && still_touches(-trial_motion * v * motion, share));
   };
   std::array<bool, 6> free{};
   parallel_blocks(free.size(), threads, 1, [&](std::size_t begin, std::size_t end) {

@@ -127,6 +127,44 @@ void add_turned_rivals(ScaleLadder& scales, const SearchOutcome& outcome, const 
   weigh(outcome, judgement);
 }
 
+// Shifts after which a cloud still lies on itself.
+std::vector<FreeDirection> shifts_onto_itself(const PreparedCloud& cloud, int threads) {
+  constexpr double shift = 0.9;  // of the length of a motion
+  std::vector<FreeDirection> found = free_directions(cloud, cloud, Transformation::Identity(), threads);
+  std::erase_if(found, [](const FreeDirection& free) { return free.motion.tail<3>().norm() < shift; });
+  return found;
+}
+
+// Along a corridor with equal doors either cloud slides on itself. A door leaf that one scan saw by chance must not fix
+// at a pose what neither cloud fixes at 2 v and one of them does not at v.
+std::vector<FreeDirection> shifts_of_both(ScaleLadder& scales, const Transformation& target_from_source) {
+  constexpr double same_line = 0.93;  // cosine
+  const auto has = [&](const std::vector<FreeDirection>& shifts, const Eigen::Vector3d& line) {
+    return std::ranges::any_of(shifts, [&](const FreeDirection& other) {
+      return std::abs(other.motion.tail<3>().normalized().dot(line.normalized())) > same_line;
+    });
+  };
+  const auto of_target = [&](std::size_t rung) {
+    return shifts_onto_itself(scales.frame(rung).target(), scales.threads());
+  };
+  const auto of_source = [&](std::size_t rung) {
+    return shifts_onto_itself(scales.frame(rung).source(), scales.threads());
+  };
+  const Eigen::Matrix3d source_from_target = target_from_source.linear().transpose();
+  const std::size_t coarse = std::min<std::size_t>(1, scales.rungs() - 1);
+  std::vector<FreeDirection> found = of_target(coarse);
+  if (found.empty()) return {};
+  const auto keep = [&](const auto& is_kept) {
+    std::erase_if(found, [&](const FreeDirection& free) { return !is_kept(free.motion.tail<3>()); });
+  };
+  const std::vector<FreeDirection> others = of_source(coarse);
+  keep([&](const Eigen::Vector3d& line) { return has(others, source_from_target * line); });
+  if (found.empty() || coarse == 0) return found;
+  const std::vector<FreeDirection> finest = of_target(0), finest_others = of_source(0);
+  keep([&](const Eigen::Vector3d& line) { return has(finest, line) || has(finest_others, source_from_target * line); });
+  return found;
+}
+
 // The rung that answered or, where it does not carry the answer, another one.
 Judgement most_confident(ScaleLadder& scales, const SearchOutcome& outcome) {
   // Where nothing was searched no rival is known, and large voxels alone hardly tell poses apart.
@@ -193,6 +231,10 @@ Doubts judge(ScaleLadder& scales, const SearchOutcome& outcome, Result& result) 
   }
   if (judgement.confidence >= 0.5 && !outcome.ranked.empty()) {
     add_turned_rivals(scales, outcome, result.options, judgement);
+  }
+  if (judgement.confidence >= 0.5) {
+    judgement.free_directions = shifts_of_both(scales, outcome.target_from_source);
+    weigh(outcome, judgement);
   }
   const bool is_closed_at_v = at_v.geometric_mean() >= overlap_of_closed_surfaces * judgement.pose.overlap();
   if (judgement.confidence >= 0.5 && judgement.rung > outcome.finest_rung && is_closed_at_v) {
