@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/multiversion.hpp"
+#include "core/parallel.hpp"
 #include "estimation/robust_fit.hpp"
 #include "features/bsc.hpp"
 #include "igsp/evaluation.hpp"
@@ -78,9 +79,12 @@ void CommonFrame::describe(std::span<const Transformation> target_from_source) {
 
 const std::vector<Descriptor>& CommonFrame::target_descriptors() {
   if (!target_descriptors_) {
-    const SupportTable supports = gather_supports(target_.grid, target_.keypoints, descriptor_radius_);
+    SupportTable target;
+    parallel_pair(
+        threads_, [&] { target = gather_supports(target_.grid, target_.keypoints, descriptor_radius_); },
+        [&] { source_supports(); });
     const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-    target_descriptors_ = std::move(describe_in_frames(supports, {&axes, 1}, descriptor_radius_, threads_).front());
+    target_descriptors_ = std::move(describe_in_frames(target, {&axes, 1}, descriptor_radius_, threads_).front());
   }
   return *target_descriptors_;
 }
@@ -98,18 +102,22 @@ const std::vector<Descriptor>* CommonFrame::known(const Eigen::Matrix3d& target_
   return nullptr;
 }
 
+const SupportTable& CommonFrame::source_supports() {
+  if (!source_supports_) source_supports_ = gather_supports(source_.grid, source_.keypoints, descriptor_radius_);
+  return *source_supports_;
+}
+
 void CommonFrame::describe_source(std::span<const Eigen::Matrix3d> target_from_source) {
   const std::size_t before = cache_.size();
   for (const Eigen::Matrix3d& rotation : target_from_source) {
     if (known(rotation) == nullptr) cache_.push_back({rotation, {}});
   }
   if (cache_.size() == before) return;
-  if (!source_supports_) source_supports_ = gather_supports(source_.grid, source_.keypoints, descriptor_radius_);
   std::vector<Eigen::Matrix3d> frames;
   // The target's axes, seen in the source: the columns of R^T.
   for (std::size_t i = before; i < cache_.size(); ++i) frames.push_back(cache_[i].rotation.transpose());
   std::vector<std::vector<Descriptor>> found =
-      describe_in_frames(*source_supports_, frames, descriptor_radius_, threads_);
+      describe_in_frames(source_supports(), frames, descriptor_radius_, threads_);
   for (std::size_t i = 0; i < found.size(); ++i) cache_[before + i].descriptors = std::move(found[i]);
 }
 

@@ -36,6 +36,7 @@ class CommonFrame {
     std::vector<Descriptor> descriptors;
   };
   const std::vector<Descriptor>* known(const Eigen::Matrix3d& target_from_source) const;
+  const SupportTable& source_supports();
   void describe_source(std::span<const Eigen::Matrix3d> target_from_source);
 
   const PreparedCloud& source_;

@@ -109,10 +109,15 @@ std::vector<Hypothesis> propose_hypotheses(std::span<const Candidate> candidates
       return (seed.target - h.target_from_source * seed.source).norm() < tolerance;
     });
   };
-  propose(fit_to(preferred_by_all(candidates, graph, pairs, source.size(), target.size())), Eigen::Vector3d::Zero());
+  std::optional<Transformation> preferred;
+  std::vector<Ranked> seeds;
+  parallel_pair(
+      options.threads,
+      [&] { preferred = fit_to(preferred_by_all(candidates, graph, pairs, source.size(), target.size())); },
+      [&] { seeds = ranked_seeds(graph); });
+  propose(preferred, Eigen::Vector3d::Zero());
   // The next seeds that nothing explains yet are fitted at the same time, one for each thread, and then asked in their
   // order as if each had waited for those before it.
-  const std::vector<Ranked> seeds = ranked_seeds(graph);
   std::vector<std::uint32_t> next;
   for (auto seed = seeds.begin(); seed != seeds.end();) {
     next.clear();
