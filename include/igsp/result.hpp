@@ -65,7 +65,8 @@ struct FreeDirection {
 /// How well the surfaces fix the transformation, from the residuals of the fine registration; those of one patch of
 /// surface count as one (docs/covariance.md).
 /// Order: rotation about x, y, z [rad], translation along x, y, z [units of the cloud]; the small motion is applied on
-/// the left, in the target's frame, rotations about `centre`.
+/// the left, in the target's frame, rotations about `centre`. With 4 degrees of freedom the four have a covariance of
+/// their own, not correlated with the tilt.
 struct Precision {
   double inlier_rmse = 0;  ///< robust RMS of the distances along the normals where the surfaces lie on each other
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();

@@ -104,6 +104,23 @@ Matrix6 solve(const Matrix6& matrix, const Matrix6& right) {
   return result;
 }
 
+// H^-1 B H^-1.
+Matrix6 sandwich(const Matrix6& hessian, const Matrix6& scatter) {
+  const Matrix6 half = solve(hessian, scatter);
+  const Matrix6 covariance = solve(hessian, half.transpose());
+  return 0.5 * (covariance + covariance.transpose());
+}
+
+// With 4 degrees of freedom rotations about x and y are known: what errors they would have does not depend on the
+// others, nor do the others' errors on them.
+Matrix6 without_tilt(Matrix6 matrix, int degrees_of_freedom) {
+  if (degrees_of_freedom == 4) {
+    matrix.topRightCorner<2, 4>().setZero();
+    matrix.bottomLeftCorner<4, 2>().setZero();
+  }
+  return matrix;
+}
+
 // Covariance of the gradient.
 Matrix6 scatter_of(const PairSums& sums, double weight_sum, double residual_variance) {
   Matrix6 scatter = Matrix6::Zero();
@@ -120,7 +137,8 @@ Matrix6 scatter_of(const PairSums& sums, double weight_sum, double residual_vari
 
 }  // namespace
 
-PoseCovariance pose_covariance(std::span<const PlanePair> pairs, double radius, double voxel_size) {
+PoseCovariance pose_covariance(std::span<const PlanePair> pairs, double radius, double voxel_size,
+                               int degrees_of_freedom) {
   PoseCovariance result;
   const Weighted weighted = weigh(pairs, radius, voxel_size);
   if (!(weighted.sum > 0)) return result;
@@ -134,9 +152,8 @@ PoseCovariance pose_covariance(std::span<const PlanePair> pairs, double radius, 
   result.gradient_covariance = beyond_patches / (result.residual_variance * result.residual_variance) * scatter;
   result.information = result.curvature;
   if (!is_determined(sums.hessian)) return result;
-  const Matrix6 half = solve(sums.hessian, scatter);
-  const Matrix6 covariance = solve(sums.hessian, half.transpose());
-  result.covariance = 0.5 * beyond_patches * (covariance + covariance.transpose());
+  result.covariance = beyond_patches * sandwich(without_tilt(sums.hessian, degrees_of_freedom),
+                                                without_tilt(scatter, degrees_of_freedom));
   result.information = solve(result.covariance, Matrix6::Identity());
   return result;
 }

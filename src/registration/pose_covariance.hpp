@@ -22,7 +22,9 @@ struct PoseCovariance {
 /// The covariance of the robust least squares estimate, with residuals that are alike where they lie near each other:
 /// H^-1 B H^-1 with H = sum of w J J^T and B = sum over patches of g g^T, g = sum of w r J over the pairs of a patch
 /// (the cluster-robust covariance of Liang and Zeger 1986). Few patches say little of B, so it is drawn towards what
-/// independent residuals would give. `radius`: at which the pairs were found.
-PoseCovariance pose_covariance(std::span<const PlanePair> pairs, double radius, double voxel_size);
+/// independent residuals would give. `radius`: at which the pairs were found. With 4 degrees of freedom the four that
+/// are estimated have a covariance of their own, not correlated with the tilt.
+PoseCovariance pose_covariance(std::span<const PlanePair> pairs, double radius, double voxel_size,
+                               int degrees_of_freedom = 6);
 
 }  // namespace igsp

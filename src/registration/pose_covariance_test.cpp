@@ -81,6 +81,21 @@ TEST(PoseCovariance, InformationIsItsInverse) {
   EXPECT_EQ(Eigen::LLT<Matrix6>(pose.covariance).info(), Eigen::Success);
 }
 
+// Rotations about x and y are known, so nothing is learnt of the others from what residuals say of those.
+TEST(PoseCovariance, OfFourUnknownsIsTheirOwn) {
+  using Matrix4 = Eigen::Matrix4d;
+  const std::vector<PlanePair> pairs = pairs_alike_within(30 * voxel_size, 1);
+  const PoseCovariance pose = pose_covariance(pairs, radius, voxel_size, 4);
+  const Matrix4 curvature = pose.curvature.bottomRightCorner<4, 4>().inverse();
+  const Matrix4 expected = curvature * pose.gradient_covariance.bottomRightCorner<4, 4>() * curvature;
+  const Matrix4 covariance = pose.covariance.bottomRightCorner<4, 4>();
+  EXPECT_LT((covariance - expected).norm(), 1e-9 * expected.norm());
+  EXPECT_EQ((pose.covariance.topRightCorner<2, 4>().norm()), 0);
+  EXPECT_LT((pose.information * pose.covariance - Matrix6::Identity()).norm(), 1e-6);
+  const Matrix6 of_six = pose_covariance(pairs, radius, voxel_size).information;
+  EXPECT_GT((of_six.bottomRightCorner<4, 4>() - covariance.inverse()).norm(), 1e-3 * covariance.inverse().norm());
+}
+
 TEST(PoseCovariance, HasTheUnitOfTheClouds) {
   const double unit = 8;
   std::vector<PlanePair> pairs = pairs_alike_within(30 * voxel_size, 2);

@@ -102,7 +102,7 @@ Precision precision_at(const FineSurfaces& surfaces, const Transformation& targe
   const double radius = fine_search_radius * surfaces.voxel_size;
   const PoseCovariance pose = pose_covariance(
       plane_pairs_at(surfaces.source, surfaces.target, target_from_source, radius, max_fine_points, surfaces.threads),
-      radius, surfaces.voxel_size);
+      radius, surfaces.voxel_size, degrees_of_freedom);
   Precision precision;
   precision.centre = pose.centre;
   precision.inlier_rmse = std::sqrt(pose.residual_variance);
