@@ -104,7 +104,7 @@ MUTANTS = [
     ("registration/verdict.cpp", "judgement.pose.quality - std::max(0.0, told_apart)", "rival.assessment.quality",
      "turned, it fits as well"),
     ("registration/verdict.cpp", "turns_onto_itself(scales.frame(rung).source())", "turns_onto_itself(scales.frame(rung).target())", "turns of the other cloud"),
-    ("registration/verdict.cpp", "judgement.free_directions = shifts_of_both(scales, outcome.target_from_source);", "", "what both clouds slide along"),
+    ("registration/verdict.cpp", "judgement.free_directions = shifts_of_both(scales, judgement.rung, outcome.target_from_source);", "", "what both clouds slide along"),
     ("registration/mirror_image.cpp", "if (of_image <= result.confidence) return;", "return;", "the mirror image fits better"),
     ("registration/align.cpp", "if (is_in_order(source, target)) {", "if (true) {", "which cloud moves"),
     ("registration/exchange.cpp", "centre = target_from_source * centre;", "", "exchanged: centre of the precision"),

@@ -137,19 +137,23 @@ std::vector<FreeDirection> shifts_onto_itself(const PreparedCloud& cloud, int th
 
 // Along a corridor with equal doors either cloud slides on itself. A door leaf that one scan saw by chance must not fix
 // at a pose what neither cloud fixes at 2 v and one of them does not at v.
-std::vector<FreeDirection> shifts_of_both(ScaleLadder& scales, const Transformation& target_from_source) {
+std::vector<FreeDirection> shifts_of_both(ScaleLadder& scales, std::size_t rung,
+                                          const Transformation& target_from_source) {
   constexpr double same_line = 0.93;  // cosine
   const auto has = [&](const std::vector<FreeDirection>& shifts, const Eigen::Vector3d& line) {
     return std::ranges::any_of(shifts, [&](const FreeDirection& other) {
       return std::abs(other.motion.tail<3>().normalized().dot(line.normalized())) > same_line;
     });
   };
-  const auto of_target = [&](std::size_t rung) {
-    return shifts_onto_itself(scales.frame(rung).target(), scales.threads());
+  const auto of_target = [&](std::size_t at) {
+    return shifts_onto_itself(scales.frame(at).target(), scales.threads());
   };
-  const auto of_source = [&](std::size_t rung) {
-    return shifts_onto_itself(scales.frame(rung).source(), scales.threads());
+  const auto of_source = [&](std::size_t at) {
+    return shifts_onto_itself(scales.frame(at).source(), scales.threads());
   };
+  // Of most pairs the rung that is there already tells that nothing slides, and no other has to be made.
+  const bool is_target_fixed = of_target(rung).empty(), is_source_fixed = of_source(rung).empty();
+  if (rung == 0 ? is_target_fixed && is_source_fixed : is_target_fixed || is_source_fixed) return {};
   const Eigen::Matrix3d source_from_target = target_from_source.linear().transpose();
   const std::size_t coarse = std::min<std::size_t>(1, scales.rungs() - 1);
   std::vector<FreeDirection> found = of_target(coarse);
@@ -233,7 +237,7 @@ Doubts judge(ScaleLadder& scales, const SearchOutcome& outcome, Result& result) 
     add_turned_rivals(scales, outcome, result.options, judgement);
   }
   if (judgement.confidence >= 0.5) {
-    judgement.free_directions = shifts_of_both(scales, outcome.target_from_source);
+    judgement.free_directions = shifts_of_both(scales, judgement.rung, outcome.target_from_source);
     weigh(outcome, judgement);
   }
   const bool is_closed_at_v = at_v.geometric_mean() >= overlap_of_closed_surfaces * judgement.pose.overlap();
