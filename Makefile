@@ -49,7 +49,7 @@ asan tsan:
 	cmake --build --preset $@
 	ctest --preset $@ -j $(jobs)
 
-# The unit tests alone, as .ci/run begins: minutes where ccache knows the sources, a quarter of an hour where it does not.
+# The unit tests alone, as .ci/run begins: three minutes where ccache knows the sources.
 asan_unit:
 	@scripts/setup.sh clang-14 libclang-rt-14-dev
 	cmake --preset asan

@@ -140,32 +140,34 @@ std::vector<FreeDirection> shifts_onto_itself(const PreparedCloud& cloud, int th
 std::vector<FreeDirection> shifts_of_both(ScaleLadder& scales, std::size_t rung,
                                           const Transformation& target_from_source) {
   constexpr double same_line = 0.93;  // cosine
+  struct Shifts {
+    std::vector<FreeDirection> target, source;
+  };
+  const auto shifts_at = [&](std::size_t at) -> Shifts {
+    return {shifts_onto_itself(scales.frame(at).target(), scales.threads()),
+            shifts_onto_itself(scales.frame(at).source(), scales.threads())};
+  };
+  // Of most pairs the rung that is there already tells that nothing slides, and no other has to be made.
+  const Shifts here = shifts_at(rung);
+  const bool is_target_fixed = here.target.empty(), is_source_fixed = here.source.empty();
+  if (rung == 0 ? is_target_fixed && is_source_fixed : is_target_fixed || is_source_fixed) return {};
   const auto has = [&](const std::vector<FreeDirection>& shifts, const Eigen::Vector3d& line) {
     return std::ranges::any_of(shifts, [&](const FreeDirection& other) {
       return std::abs(other.motion.tail<3>().normalized().dot(line.normalized())) > same_line;
     });
   };
-  const auto of_target = [&](std::size_t at) {
-    return shifts_onto_itself(scales.frame(at).target(), scales.threads());
+  const auto has_source = [&](const Shifts& shifts, const FreeDirection& free) {
+    return has(shifts.source, target_from_source.linear().transpose() * free.motion.tail<3>());
   };
-  const auto of_source = [&](std::size_t at) {
-    return shifts_onto_itself(scales.frame(at).source(), scales.threads());
-  };
-  // Of most pairs the rung that is there already tells that nothing slides, and no other has to be made.
-  const bool is_target_fixed = of_target(rung).empty(), is_source_fixed = of_source(rung).empty();
-  if (rung == 0 ? is_target_fixed && is_source_fixed : is_target_fixed || is_source_fixed) return {};
-  const Eigen::Matrix3d source_from_target = target_from_source.linear().transpose();
   const std::size_t coarse = std::min<std::size_t>(1, scales.rungs() - 1);
-  std::vector<FreeDirection> found = of_target(coarse);
+  const Shifts at_2v = coarse == rung ? here : shifts_at(coarse);
+  std::vector<FreeDirection> found = at_2v.target;
+  std::erase_if(found, [&](const FreeDirection& free) { return !has_source(at_2v, free); });
   if (found.empty()) return {};
-  const auto keep = [&](const auto& is_kept) {
-    std::erase_if(found, [&](const FreeDirection& free) { return !is_kept(free.motion.tail<3>()); });
-  };
-  const std::vector<FreeDirection> others = of_source(coarse);
-  keep([&](const Eigen::Vector3d& line) { return has(others, source_from_target * line); });
-  if (found.empty() || coarse == 0) return found;
-  const std::vector<FreeDirection> finest = of_target(0), finest_others = of_source(0);
-  keep([&](const Eigen::Vector3d& line) { return has(finest, line) || has(finest_others, source_from_target * line); });
+  const Shifts at_v = rung == 0 ? here : shifts_at(0);
+  std::erase_if(found, [&](const FreeDirection& free) {
+    return !has(at_v.target, free.motion.tail<3>()) && !has_source(at_v, free);
+  });
   return found;
 }
 
