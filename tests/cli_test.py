@@ -223,7 +223,8 @@ class Align(CommandTest):
         self.igsp("align", source, target, "-o", "a.ply", "--transform", "T.txt")
         moved, kind = read_ply(self.folder / "a.ply")
         self.assertEqual(kind, "<f8")
-        self.igsp("align", self.source, self.target, "--transform", "near.txt")
+        nowhere = ["--source-viewpoint", "none", "--target-viewpoint", "none"]  # as with the offset
+        self.igsp("align", self.source, self.target, "--transform", "near.txt", *nowhere)
         near = np.loadtxt(self.folder / "near.txt")
         expected = read_ply(self.source)[0] @ near[:3, :3].T + near[:3, 3] + offset
         np.testing.assert_allclose(moved, expected, atol=1e-5)

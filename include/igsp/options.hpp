@@ -55,8 +55,9 @@ struct HypothesisOptions {
   double length_tolerance = 2.0;       ///< of two candidates' lengths to agree [voxels]
   double min_length = 4.0;             ///< shorter lengths say nothing [voxels]
   double max_frame_angle_rad = 0.785;  ///< between the frame rotations of two candidates that agree
-  int max_proposed = 24;               ///< hypotheses screened by re-matching in a common frame
-  int max_refined = 4;                 ///< hypotheses refined and ranked
+  // Of both twice as many where both viewpoints are known.
+  int max_proposed = 24;  ///< hypotheses screened by re-matching in a common frame
+  int max_refined = 4;    ///< hypotheses refined and ranked
 };
 
 struct ConvergenceOptions {

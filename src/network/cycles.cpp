@@ -11,6 +11,7 @@ namespace {
 
 // Two links from copies of the same room support each other, and both stand in what a scanner saw through.
 bool proves_nothing(const LinkGraph& graph, std::span<const LinkStep> loop) {
+  if (std::ranges::any_of(loop, [&](const LinkStep& step) { return graph.links[step.link].is_refused; })) return true;
   return std::ranges::count_if(loop, [&](const LinkStep& step) { return graph.links[step.link].is_doubtful; }) > 1;
 }
 

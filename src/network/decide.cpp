@@ -27,6 +27,14 @@ std::vector<std::size_t> anchors_of(const LinkGraph& graph, std::span<const std:
   return anchors;
 }
 
+// In the lengths of the graph.
+WitnessQuestion witnesses(SeenSpace& space, double voxel_size) {
+  return [&space, voxel_size](std::size_t source, std::size_t target, Transformation target_from_source) {
+    target_from_source.translation() *= voxel_size;
+    return witness_of(space.at(source, target, target_from_source));
+  };
+}
+
 // RMS displacement of the source's points between the pair's own answer and the network's.
 double displacement(const NetworkLink& link, const Network& network, const ScanShape& shape) {
   const Transformation difference = network.scans[link.target].world_from_scan.inverse() *
@@ -59,7 +67,8 @@ void place_scans(Network& network, const BalancedPoses& poses, std::span<const S
 }
 
 // Of a registered pair whose scans were not joined.
-std::string why_apart(const NetworkLink& link, const NetworkOptions& options) {
+std::string why_apart(const NetworkLink& link, bool is_contradicted, const NetworkOptions& options) {
+  if (is_contradicted) return "puts other scans where scanners of the network saw through";
   if (is_doubtful(link)) {
     return fmt::format(
         "{:.1f} % of the points lie where the other scanner saw through, and no link without such a doubt "
@@ -80,7 +89,8 @@ std::string why_apart(const NetworkLink& link, const NetworkOptions& options) {
 }
 
 void name_states(Network& network, const MeasuredGraph& measured, const BalancedPoses& poses,
-                 const std::vector<CycleSupport>& support, const NetworkOptions& options) {
+                 const std::vector<CycleSupport>& support, const std::vector<bool>& is_contradicted,
+                 const NetworkOptions& options) {
   for (NetworkLink& link : network.links) {
     if (link.state == LinkState::not_registered || !contradicts_free_space(link)) continue;
     link.state = LinkState::rejected;
@@ -99,7 +109,7 @@ void name_states(Network& network, const MeasuredGraph& measured, const Balanced
     link.reason = std::isfinite(poses.errors[l])
                       ? fmt::format("the other links of the network put the pair {:.1f} sigma elsewhere",
                                     std::sqrt(poses.errors[l]))
-                      : why_apart(link, options);
+                      : why_apart(link, is_contradicted[l], options);
   }
   const std::vector<Edge> edges = edges_of(measured.graph, used);
   network.components = connected_components(network.scans.size(), edges);
@@ -116,14 +126,17 @@ void name_states(Network& network, const MeasuredGraph& measured, const Balanced
 
 }  // namespace
 
-void decide(Network& network, std::span<const ScanShape> shapes, const NetworkOptions& options) {
-  const MeasuredGraph measured = measured_graph(network.links, shapes, network.voxel_size, options);
+void decide(Network& network, std::span<const ScanShape> shapes, SeenSpace* space, const NetworkOptions& options) {
+  const MeasuredGraph all = measured_graph(network.links, shapes, network.voxel_size, options);
+  Forest forest = spanning_forest(all.graph, cycle_support(all.graph, triangles(all.graph)),
+                                  space ? witnesses(*space, network.voxel_size) : WitnessQuestion());
+  const MeasuredGraph measured = without_unused_refused(all, forest);
   const std::vector<Triangle> loops = triangles(measured.graph);
   for (const Triangle& loop : loops) network.cycles.push_back({loop.scans, std::sqrt(loop.error), loop.closes()});
   const std::vector<CycleSupport> support = cycle_support(measured.graph, loops);
-  const std::vector<std::size_t> forest = spanning_forest(measured.graph, support);
-  const BalancedPoses poses = balance_poses(measured.graph, forest, anchors_of(measured.graph, forest, options));
-  name_states(network, measured, poses, support, options);
+  const BalancedPoses poses =
+      balance_poses(measured.graph, forest.links, anchors_of(measured.graph, forest.links, options));
+  name_states(network, measured, poses, support, forest.is_contradicted, options);
   place_scans(network, poses, shapes, options);
 }
 

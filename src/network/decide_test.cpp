@@ -27,7 +27,7 @@ struct Chain {
     return link;
   }
   const Network& decided(const NetworkOptions& options = {}) {
-    decide(network, shapes, options);
+    decide(network, shapes, nullptr, options);
     return network;
   }
 };
@@ -104,6 +104,23 @@ TEST(Decide, DoubtfulLinksDoNotConfirmEachOther) {
   EXPECT_NE(network.links[2].reason.find("no link without such a doubt"), std::string::npos);
   chain.network.links[2].violation = 0.001;
   EXPECT_EQ(chain.decided().components.size(), 1u);
+}
+
+// Refused as pairs and not contradicted: copies of a bare room, which agree with each other.
+TEST(Decide, RefusedPairsDoNotConfirmEachOther) {
+  Chain chain(3);
+  chain.network.links.push_back(Chain::link(2, 0));
+  for (NetworkLink& link : chain.network.links) {
+    link.state = LinkState::not_registered;
+    link.reason = "too little to tell it from chance";
+    link.confidence = 0.3;
+    link.agreeing_matches = 20;
+    link.in_view = 400;
+  }
+  const Network network = chain.decided();
+  EXPECT_EQ(network.components.size(), 3u);
+  EXPECT_TRUE(network.cycles.empty());
+  for (const NetworkLink& link : network.links) EXPECT_EQ(link.reason, "too little to tell it from chance");
 }
 
 TEST(Decide, LoopConfirmsLinksThatCouldNotStandAlone) {

@@ -36,7 +36,9 @@ class SharedSurface {
     for (Eigen::Vector3d& point : points_) point /= features.voxel_size;
     for (const Eigen::Vector3d& point : points_) centre_ += point / static_cast<double>(points_.size());
     for (const Eigen::Vector3d& point : points_) squared_size_ += (point - centre_).squaredNorm() / points_.size();
-    surface_.emplace(points_, PointGrid(points_, 1.0), normal_radius);
+    std::optional<Eigen::Vector3d> viewpoint = features.viewpoint;
+    if (viewpoint) *viewpoint /= features.voxel_size;
+    surface_.emplace(points_, PointGrid(points_, 1.0), normal_radius, viewpoint);
   }
   SharedSurface(const SharedSurface&) = delete;
   SharedSurface& operator=(const SharedSurface&) = delete;

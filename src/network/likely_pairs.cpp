@@ -34,7 +34,7 @@ class PairSearch {
  public:
   PairSearch(const Network& network, FeatureShelf& features, std::span<const ScanShape> shapes,
              const NetworkOptions& options)
-      : start_(network), shapes_(shapes), options_(options), n_(network.scans.size()) {
+      : start_(network), shapes_(shapes), options_(options), n_(network.scans.size()), space_(features) {
     std::vector<std::vector<Descriptor>> voters;
     for (std::size_t i = 0; i < n_; ++i) {
       const auto scan = network.scans[i].problem.empty() ? features.get(i) : std::make_shared<const Features>();
@@ -60,7 +60,7 @@ class PairSearch {
   void take_stock(const std::vector<NetworkLink>& links) {
     now_ = start_;
     now_.links = links;
-    decide(now_, shapes_, options_);
+    decide(now_, shapes_, &space_, options_);
     confirmed_.assign(n_, 0);
     in_vain_.assign(n_, 0);
     tried_.clear();
@@ -115,6 +115,7 @@ class PairSearch {
   std::span<const ScanShape> shapes_;
   const NetworkOptions& options_;
   std::size_t n_;
+  SeenSpace space_;
   std::vector<double> likeness_;
   std::vector<Space> spaces_;
   Network now_;

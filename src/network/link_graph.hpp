@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,7 +18,10 @@ struct GraphLink {
   Matrix6 tolerance = Matrix6::Identity();  ///< covariance of what it may be off and still be right: it judges loops
   double weight = 1;                        ///< of its vote
   bool may_stand_alone = true;              ///< joins scans without a loop that confirms it
-  bool is_doubtful = false;                 ///< something speaks against it: it does not confirm others like it
+  /// Or at least with so many witnesses: other scans that it brings together and that say so (WitnessQuestion).
+  std::optional<std::size_t> witnesses_needed;
+  bool is_refused = false;   ///< as a pair: it confirms nothing and is there for its witnesses alone
+  bool is_doubtful = false;  ///< something speaks against it: it does not confirm others like it
 };
 
 /// Scans (their centres, in their own frames) and links.

@@ -24,6 +24,12 @@ constexpr double lonely_violation = 0.06;
 constexpr double forbidden_violation = 0.12;
 constexpr std::size_t least_in_view = 100;
 
+// What a witness in favour is worth, and what a link needs with them [decades of odds]. In 18 networks of buildings all
+// 7 refused links with 3 witnesses and more that left no direction free were right, and of 50 without any 43 were
+// wrong.
+constexpr double worth_of_witness = 0.5, needed_odds = 0.5;
+constexpr double least_confidence = 0.05;
+
 constexpr double least_weight = 0.1, greatest_weight = 5;  // log odds
 
 Matrix6 floor_of(double sigma, double size) {
@@ -50,6 +56,14 @@ bool may_stand_alone(const NetworkLink& link, const NetworkOptions& options) {
          link.agreeing_matches >= options.min_unconfirmed_matches && link.violation <= lonely_violation;
 }
 
+// None where no witness makes up for what the pair itself says.
+std::optional<std::size_t> witnesses_needed(const NetworkLink& link) {
+  if (link.violation > clear_violation || link.confidence < least_confidence) return {};
+  if (!link.precision.free_directions.empty()) return {};
+  const double odds = std::log10(link.confidence / std::max(1e-12, 1 - link.confidence));
+  return static_cast<std::size_t>(std::max(1.0, std::ceil((needed_odds - odds) / worth_of_witness)));
+}
+
 GraphLink graph_link(const NetworkLink& link, const ScanShape& source, double voxel_size,
                      const NetworkOptions& options) {
   GraphLink result;
@@ -64,6 +78,8 @@ GraphLink graph_link(const NetworkLink& link, const ScanShape& source, double vo
   const double odds = link.confidence / std::max(1e-12, 1 - link.confidence);
   result.weight = std::clamp(std::log(odds), least_weight, greatest_weight);
   result.may_stand_alone = may_stand_alone(link, options);
+  result.witnesses_needed = witnesses_needed(link);
+  result.is_refused = link.state == LinkState::not_registered && !may_be_right(link, options);
   result.is_doubtful = is_doubtful(link);
   return result;
 }
@@ -82,6 +98,13 @@ bool may_be_right(const NetworkLink& link, const NetworkOptions& options) {
   return is_clear(link) && link.agreeing_matches >= options.min_unconfirmed_matches;
 }
 
+Witness witness_of(const FreeSpace& free_space) {
+  if (!free_space.source || !free_space.target) return Witness::none;
+  if (free_space.violation() > lonely_violation) return Witness::against;
+  const std::size_t in_view = std::min(free_space.source->in_view, free_space.target->in_view);
+  return in_view >= least_in_view && free_space.violation() <= clear_violation ? Witness::in_favour : Witness::none;
+}
+
 bool is_doubtful(const NetworkLink& link) {
   return link.violation > doubtful_violation;
 }
@@ -96,12 +119,30 @@ MeasuredGraph measured_graph(std::span<const NetworkLink> links, std::span<const
   measured.graph.degrees_of_freedom = options.pair.degrees_of_freedom;
   for (const ScanShape& shape : shapes) measured.graph.centres.push_back(shape.centre / voxel_size);
   for (std::size_t i = 0; i < links.size(); ++i) {
-    const bool is_there = links[i].state != LinkState::not_registered || may_be_right(links[i], options);
+    const bool is_there =
+        links[i].state != LinkState::not_registered || may_be_right(links[i], options) || witnesses_needed(links[i]);
     if (!is_there || contradicts_free_space(links[i])) continue;
     measured.graph.links.push_back(graph_link(links[i], shapes[links[i].source], voxel_size, options));
     measured.link_of.push_back(i);
   }
   return measured;
+}
+
+MeasuredGraph without_unused_refused(const MeasuredGraph& measured, Forest& forest) {
+  const LinkGraph& all = measured.graph;
+  MeasuredGraph kept{{all.centres, {}, all.degrees_of_freedom}, {}};
+  std::vector<bool> is_contradicted;
+  std::vector<std::size_t> renumbered(all.links.size());
+  for (std::size_t l = 0; l < all.links.size(); ++l) {
+    if (all.links[l].is_refused && std::ranges::find(forest.links, l) == forest.links.end()) continue;
+    renumbered[l] = kept.link_of.size();
+    kept.graph.links.push_back(all.links[l]);
+    kept.link_of.push_back(measured.link_of[l]);
+    is_contradicted.push_back(forest.is_contradicted[l]);
+  }
+  for (std::size_t& l : forest.links) l = renumbered[l];
+  forest.is_contradicted = std::move(is_contradicted);
+  return kept;
 }
 
 }  // namespace igsp

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "igsp/network.hpp"
-#include "network/link_graph.hpp"
+#include "network/spanning_forest.hpp"
 
 namespace igsp {
 
@@ -15,17 +15,24 @@ struct ScanShape {
 };
 ScanShape shape_of(const Features& features);
 
-/// The pairs among `links` that are registered, or may be right, as a graph in voxels, and which link each of its links
-/// is. A pair that the free space speaks against clearly is left out.
+/// The pairs among `links` that are registered, may be right or may find witnesses, as a graph in voxels, and which
+/// link each of its links is. A pair that the free space speaks against clearly is left out.
 struct MeasuredGraph {
   LinkGraph graph;
   std::vector<std::size_t> link_of;  ///< per link of the graph
 };
+
 MeasuredGraph measured_graph(std::span<const NetworkLink> links, std::span<const ScanShape> shapes, double voxel_size,
                              const NetworkOptions& options);
 
+/// Without the refused pairs that the forest did not need; renumbers the links of the forest.
+MeasuredGraph without_unused_refused(const MeasuredGraph& measured, Forest& forest);
+
 /// True of a pair, though refused by itself, that shares many matches and that the free space does not speak against.
 bool may_be_right(const NetworkLink& link, const NetworkOptions& options);
+
+/// What two scans say that would be seen so: in favour where each sees much of the other and nothing in the way.
+Witness witness_of(const FreeSpace& free_space);
 
 /// True where the free space speaks against a pair, so that others must confirm it.
 bool is_doubtful(const NetworkLink& link);

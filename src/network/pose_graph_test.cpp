@@ -35,7 +35,7 @@ struct Outcome {
 };
 
 Outcome solve(const LinkGraph& graph, const std::vector<Transformation>& truth) {
-  const std::vector<std::size_t> forest = spanning_forest(graph, cycle_support(graph, triangles(graph)));
+  const std::vector<std::size_t> forest = spanning_forest(graph, cycle_support(graph, triangles(graph))).links;
   std::vector<Edge> edges;
   for (const std::size_t l : forest) edges.emplace_back(graph.links[l].source, graph.links[l].target);
   Outcome outcome;
@@ -96,7 +96,7 @@ TEST(PoseGraph, MinimumHasNoGradient) {
     graph.links.push_back(link_between(truth, (i + 1) % 8, i, dice.step(0.002, 0.1)));
     graph.links.push_back(link_between(truth, (i + 2) % 8, i, dice.step(0.002, 0.1)));
   }
-  const auto forest = spanning_forest(graph, cycle_support(graph, triangles(graph)));
+  const auto forest = spanning_forest(graph, cycle_support(graph, triangles(graph))).links;
   const std::size_t anchor[] = {0};
   const BalancedPoses poses = balance_poses(graph, forest, anchor);
   // The loss itself, written down once more: Geman-McClure of information that equals the inverse tolerance.

@@ -96,7 +96,10 @@ Network register_network(std::size_t scans, const FeatureSource& features, const
                                    shelf, options.pair, store, report_pairs);
   }
   report_progress(progress, "pairs", 1);
-  decide(network, shapes, options);
+  {
+    SeenSpace space(shelf);
+    decide(network, shapes, &space, options);
+  }
   report_progress(progress, "network", 0);
   const std::vector<bool> placed = move_to_control(network, stations, options);
   if (options.pair.refinement.enabled) refine_jointly(network, shelf, stations, options, placed);

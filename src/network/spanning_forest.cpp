@@ -1,6 +1,8 @@
 #include "network/spanning_forest.hpp"
 
 #include <algorithm>
+#include <array>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -21,14 +23,20 @@ struct Proposal {
 
 class Growth {
  public:
-  Growth(const LinkGraph& graph, const std::vector<CycleSupport>& support)
-      : graph_(graph), support_(support), component_(graph.centres.size()), forest_links_(graph.centres.size()) {
+  Growth(const LinkGraph& graph, const std::vector<CycleSupport>& support, const WitnessQuestion& ask)
+      : graph_(graph),
+        support_(support),
+        ask_(ask),
+        component_(graph.centres.size()),
+        component_from_scan_(graph.centres.size(), Transformation::Identity()),
+        forest_links_(graph.centres.size()),
+        forest_{{}, std::vector<bool>(graph.links.size())} {
     std::iota(component_.begin(), component_.end(), 0);
   }
 
-  std::vector<std::size_t> run() {
+  Forest run() {
     while (const std::optional<Proposal> best = best_proposal()) join(best->link);
-    return forest_;
+    return std::move(forest_);
   }
 
  private:
@@ -40,14 +48,47 @@ class Growth {
       const auto [a, b] = std::minmax(component_[graph_.links[l].source], component_[graph_.links[l].target]);
       if (a != b) between[{a, b}].push_back(l);
     }
-    std::optional<Proposal> best;
+    std::vector<Proposal> proposals;
     for (auto& [components, links] : between) {
-      const std::optional<Proposal> proposal = elect(links, components.first);
-      if (!proposal) continue;
-      const auto rank = [](const Proposal& p) { return std::pair(p.confirmed, p.votes); };
-      if (!best || rank(*proposal) > rank(*best)) best = proposal;
+      if (const std::optional<Proposal> proposal = elect(links, components.first)) proposals.push_back(*proposal);
     }
-    return best;
+    std::ranges::stable_sort(proposals, std::greater(),
+                             [](const Proposal& p) { return std::pair(p.confirmed, p.votes); });
+    const auto best = std::ranges::find_if(proposals, [&](const Proposal& p) { return p.confirmed || stands(p.link); });
+    return best != proposals.end() ? std::optional(*best) : std::nullopt;
+  }
+
+  // Without a loop: by what the scans of both components say that no link connects.
+  bool stands(std::size_t link) {
+    const GraphLink& one = graph_.links[link];
+    if (!ask_) return one.may_stand_alone;
+    std::size_t in_favour = 0;
+    for (std::size_t i = 0; i < component_.size(); ++i) {
+      if (component_[i] != component_[one.source]) continue;
+      for (std::size_t j = 0; j < component_.size(); ++j) {
+        if (component_[j] != component_[one.target] || (i == one.source && j == one.target)) continue;
+        const Witness witness = witness_of(link, i, j);
+        if (witness == Witness::against) {
+          forest_.is_contradicted[link] = true;
+          return false;
+        }
+        in_favour += witness == Witness::in_favour;
+      }
+    }
+    return one.may_stand_alone || (one.witnesses_needed && in_favour >= *one.witnesses_needed);
+  }
+
+  // Components only grow, so that what was said once stays true.
+  Witness witness_of(std::size_t link, std::size_t i, std::size_t j) {
+    const auto [known, is_new] = witnesses_.try_emplace({link, i, j}, Witness::none);
+    if (is_new) {
+      const GraphLink& one = graph_.links[link];
+      known->second =
+          ask_(i, j,
+               component_from_scan_[j].inverse() * component_from_scan_[one.target] * one.target_from_source *
+                   component_from_scan_[one.source].inverse() * component_from_scan_[i]);
+    }
+    return known->second;
   }
 
   // What the links between two components agree on.
@@ -68,13 +109,14 @@ class Growth {
     std::size_t group = 0;
     bool is_doubtful = true;
     for (std::size_t i = 0; i < n; ++i) {
-      if (agree[winner][i]) ++group;
+      if (agree[winner][i] && !graph_.links[links[i]].is_refused) ++group;
       if (agree[winner][i] && !graph_.links[links[i]].is_doubtful) is_doubtful = false;
       if (!agree[winner][i]) rival = std::max(rival, votes[i]);
     }
     const bool confirmed = (group > 1 && !is_doubtful) || support_[links[winner]].triangles > 0;
     if (votes[winner] < outweighs * rival) return {};
-    if (!confirmed && !graph_.links[links[winner]].may_stand_alone) return {};
+    const GraphLink& one = graph_.links[links[winner]];
+    if (!confirmed && !one.may_stand_alone && !one.witnesses_needed) return {};
     return Proposal{links[winner], confirmed, votes[winner]};
   }
 
@@ -93,20 +135,31 @@ class Growth {
 
   void join(std::size_t link) {
     const GraphLink& one = graph_.links[link];
-    forest_.push_back(link);
+    forest_.links.push_back(link);
     forest_links_[one.source].push_back(link);
     forest_links_[one.target].push_back(link);
-    const auto [kept, joined] = std::minmax(component_[one.source], component_[one.target]);
-    const std::size_t from = joined, to = kept;
-    std::replace(component_.begin(), component_.end(), from, to);
+    const Transformation target_from_source =
+        component_from_scan_[one.target] * one.target_from_source * component_from_scan_[one.source].inverse();
+    const bool source_stays = component_[one.source] < component_[one.target];
+    const std::size_t from = component_[source_stays ? one.target : one.source];
+    const std::size_t to = component_[source_stays ? one.source : one.target];
+    const Transformation to_from_joined = source_stays ? target_from_source.inverse() : target_from_source;
+    for (std::size_t i = 0; i < component_.size(); ++i) {
+      if (component_[i] != from) continue;
+      component_[i] = to;
+      component_from_scan_[i] = to_from_joined * component_from_scan_[i];
+    }
   }
 
   using Edge = std::pair<std::size_t, std::size_t>;
   const LinkGraph& graph_;
   const std::vector<CycleSupport>& support_;
+  const WitnessQuestion& ask_;
   std::vector<std::size_t> component_;
+  std::vector<Transformation> component_from_scan_;
+  std::map<std::array<std::size_t, 3>, Witness> witnesses_;  // by link and scans
   std::vector<std::vector<std::size_t>> forest_links_;
-  std::vector<std::size_t> forest_;
+  Forest forest_;
 };
 
 }  // namespace
@@ -120,8 +173,8 @@ std::vector<std::vector<std::size_t>> links_by_scan(const LinkGraph& graph, std:
   return by_scan;
 }
 
-std::vector<std::size_t> spanning_forest(const LinkGraph& graph, const std::vector<CycleSupport>& support) {
-  return Growth(graph, support).run();
+Forest spanning_forest(const LinkGraph& graph, const std::vector<CycleSupport>& support, const WitnessQuestion& ask) {
+  return Growth(graph, support, ask).run();
 }
 
 std::vector<LinkStep> forest_path(const LinkGraph& graph, const std::vector<std::vector<std::size_t>>& forest_links,

@@ -45,6 +45,8 @@ class PairSpace {
 
   bool is_known() const { return source_.is_known() || target_.is_known(); }
 
+  bool is_known_of_both() const { return source_.is_known() && target_.is_known(); }
+
   FreeSpace at(const Transformation& target_from_source, std::size_t most_looks = 1000) const {
     return {target_.violation_by(source_, target_from_source, most_looks),
             source_.violation_by(target_, target_from_source.inverse(), most_looks)};

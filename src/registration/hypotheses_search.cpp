@@ -49,6 +49,12 @@ constexpr std::size_t carried = 3;       // from a rung to the next
 constexpr double hopeless_quality = -2.5;
 constexpr std::size_t enough_voxels = 1500;  // of either cloud, for a pose to show a little of what it is worth
 
+// Where both scanners are known free space and the sides of surfaces tell right from wrong among more poses.
+HypothesisOptions how_many(const ScaleLadder& scales, HypothesisOptions options) {
+  if (scales.space().is_known_of_both()) options.max_proposed *= 2, options.max_refined *= 2;
+  return options;
+}
+
 std::vector<Hypothesis> propose(CommonFrame& frame, const Options& options) {
   const PreparedCloud &source = frame.source(), &target = frame.target();
   const double v = target.features.voxel_size;
@@ -166,9 +172,10 @@ FreeSpaceQuestion question_of_free_space(ScaleLadder& scales) {
 }
 
 // Proposes, screens and ranks; together with the best that another scale found.
-std::vector<Rival> search_at(ScaleLadder& scales, std::size_t rung, std::span<const Rival> found,
-                             const Options& options, StageClock& clock) {
+std::vector<Rival> search_at(ScaleLadder& scales, std::size_t rung, std::span<const Rival> found, Options options,
+                             StageClock& clock) {
   CommonFrame& frame = scales.frame(rung);
+  options.hypotheses = how_many(scales, options.hypotheses);
   found = found.first(std::min(found.size(), carried));
   clock.start("hypotheses");
   const std::vector<Hypothesis> hypotheses = propose(frame, options);

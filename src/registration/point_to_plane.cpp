@@ -7,6 +7,7 @@
 
 #include "core/parallel.hpp"
 #include "estimation/robust_fit.hpp"
+#include "registration/facing.hpp"
 #include "spatial/local_pca.hpp"
 
 namespace igsp {
@@ -97,7 +98,7 @@ struct Sample {
 };
 
 // visit(p, q, n) for points of the source, [begin, end) of the sample, and their nearest point of the target, where
-// their normals agree: p as moved, n the unit sum of both normals. `scale`: of the source, before the pose.
+// their normals agree and they are not the two sides of a wall: p as moved, n the unit sum of both normals. `scale`: of the source, before the pose.
 template <typename Visit>
 void visit_pairs(const Surface& source, const Surface& target, const Transformation& pose, double scale, double radius,
                  const Sample& sample, std::size_t begin, std::size_t end, Partners* partners, const Visit& visit) {
@@ -106,9 +107,14 @@ void visit_pairs(const Surface& source, const Surface& target, const Transformat
     const std::int64_t j =
         nearest_point(target, p.cast<float>(), static_cast<float>(radius), partners ? &(*partners)[i] : nullptr);
     if (j < 0) continue;
-    const Eigen::Vector3d p_normal = pose.linear() * source.normal(i), q_normal = target.normal(j);
+    const Eigen::Vector3d own_normal = source.normal(i), q_normal = target.normal(j);
+    const Eigen::Vector3d p_normal = pose.linear() * own_normal;
     const double cosine = p_normal.dot(q_normal);
     if (std::abs(cosine) < min_normal_cosine) continue;
+    if (are_two_sides({source.point(i), own_normal, source.viewpoint()},
+                      {target.point(j), q_normal, target.viewpoint()}, cosine)) {
+      continue;
+    }
     visit(p, target.point(j), (q_normal + std::copysign(1.0, cosine) * p_normal).normalized());
   }
 }

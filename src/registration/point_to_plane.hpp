@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,28 +15,35 @@ namespace igsp {
 /// threads at once. Refers to `points`.
 class Surface {
  public:
-  /// `normal_radius`: sphere of the principal component analysis.
-  Surface(PointView points, PointGrid grid, double normal_radius)
+  /// `normal_radius`: sphere of the principal component analysis. `viewpoint`: where all was seen from, if known.
+  Surface(PointView points, PointGrid grid, double normal_radius, std::optional<Eigen::Vector3d> viewpoint = {})
       : points_(points),
         grid_(std::move(grid)),
         normal_radius_(normal_radius),
+        viewpoint_(std::move(viewpoint)),
         normals_(points.size()),
         states_(points.size()) {}
   /// With normals that are known already.
-  Surface(PointView points, PointGrid grid, Points normals)
-      : points_(points), grid_(std::move(grid)), normal_radius_(0), normals_(std::move(normals)) {}
+  Surface(PointView points, PointGrid grid, Points normals, std::optional<Eigen::Vector3d> viewpoint = {})
+      : points_(points),
+        grid_(std::move(grid)),
+        normal_radius_(0),
+        viewpoint_(std::move(viewpoint)),
+        normals_(std::move(normals)) {}
 
   std::size_t size() const { return points_.size(); }
   PointView points() const { return points_; }
   const Eigen::Vector3d& point(std::size_t i) const { return points_[i]; }
   const PointGrid& grid() const { return grid_; }
   Eigen::Vector3d normal(std::size_t i) const;  ///< unit, sign arbitrary
+  const std::optional<Eigen::Vector3d>& viewpoint() const { return viewpoint_; }
 
  private:
   enum State : std::uint8_t { unknown, being_kept, known };
   PointView points_;
   PointGrid grid_;
   double normal_radius_;
+  std::optional<Eigen::Vector3d> viewpoint_;
   mutable Points normals_;
   mutable std::vector<std::atomic<State>> states_;  // empty where all are known
 };
@@ -51,7 +59,7 @@ struct PointToPlaneOptions {
 };
 
 /// Fine registration: every step pairs points of the source with their nearest point of the target within the radius
-/// whose normal agrees, and minimises the distances along the sum of both normals (Rusinkiewicz 2019, symmetric ICP)
+/// whose normal agrees, unless they were seen from either side, and minimises the distances along the sum of both normals (Rusinkiewicz 2019, symmetric ICP)
 /// under the Geman-McClure loss at half the radius, at the last radius at loss_scale_of the step before. Ends early
 /// where a step finds too few pairs or a free direction. Returns target_from_source.
 Transformation refine_point_to_plane(const Surface& source, const Surface& target, const Transformation& initial,

@@ -161,6 +161,34 @@ TEST(PointToPlane, TheOtherSideOfAThinThingPullsLittle) {
   EXPECT_LT(found.translation().norm(), 0.02 * thickness);
 }
 
+// A wall between two rooms, and ground under both that fixes little along its normal: where it is known who saw what,
+// the other side of the wall is not taken for this one.
+TEST(PointToPlane, TheTwoSidesOfAWallDoNotPull) {
+  Random random(23);
+  const double thickness = 1.4 * voxel_size;
+  Points front, back;
+  for (int i = 0; i < 4000; ++i) {
+    const double y = random.uniform(-1, 1), z = random.uniform(0, 2);
+    front.emplace_back(0, y, z);
+    back.emplace_back(thickness, y + 0.3 * voxel_size, z);
+  }
+  const BumpySurface ground(random);
+  for (const Eigen::Vector3d& point : ground.sample(random, 500, 2)) {
+    front.push_back(point - Eigen::Vector3d(0, 0, 1));
+    back.push_back(point - Eigen::Vector3d(0, 0, 1));
+  }
+  const auto seen_from = [](const Points& points, double x) {
+    return Surface(points, PointGrid(points, voxel_size), 3 * voxel_size, Eigen::Vector3d(x, 0, 1));
+  };
+  const Surface source = seen_from(front, -3), target = seen_from(back, 3), beside = seen_from(back, -3);
+  PointToPlaneOptions options = options_of(6);
+  options.early_points = options.max_points = front.size();
+  const Transformation truth = Transformation::Identity();
+  EXPECT_LT(refine_point_to_plane(source, target, truth, options).translation().norm(), 0.02 * thickness);
+  EXPECT_GT(refine_point_to_plane(source, beside, truth, options).translation().norm(), 0.3 * thickness);
+  EXPECT_GT(refine_point_to_plane(surface_of(front), target, truth, options).translation().norm(), 0.3 * thickness);
+}
+
 // Lines of a scanner with few of them, those of one cloud between those of the other: the surfaces are the same, no
 // line is.
 TEST(PointToPlane, ScanLinesFindTheSurfaceAndNotEachOther) {

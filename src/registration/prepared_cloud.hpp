@@ -22,7 +22,7 @@ struct PreparedCloud {
 
 /// Its voxels, with the normals of its features.
 inline Surface surface_of(const PreparedCloud& cloud) {
-  return Surface(cloud.features.points, cloud.grid, cloud.features.normals);
+  return Surface(cloud.features.points, cloud.grid, cloud.features.normals, cloud.features.viewpoint);
 }
 
 }  // namespace igsp

@@ -34,6 +34,7 @@ class ScaleLadder {
   /// What the scanners saw through, asked at rung 0 of every pose: larger voxels forgive a wrong pose whatever is but a
   /// few of them large.
   PairSpace& space() { return space_; }
+  const PairSpace& space() const { return space_; }
 
   const Features& source() const { return rungs_[0].source; }  ///< of rung 0; complete only after frame(0)
   const Features& target() const { return rungs_[0].target; }

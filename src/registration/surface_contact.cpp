@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "registration/facing.hpp"
+
 namespace igsp {
 namespace {
 
@@ -11,12 +13,14 @@ constexpr double max_tangential = 1.0;  // voxels: farther away lies beyond the 
 constexpr double max_normal = 6.0;      // voxels: farther away is another surface
 constexpr double touching = 1.0;        // voxels: at a wrong pose of a like surface more lies just beyond
 constexpr double on_surface = 1.5;      // voxels
+constexpr float scattered = 0.1f;       // surface variation of foliage, which has no sides
 
 // visit(i, distance along the normal) for the places of `moved`, evenly strided, that meet the surface of `fixed`; how
-// many were tried. `normal_of(j)`: of the points of `fixed`.
-template <typename NormalOf, typename Visit>
+// many were tried. `normal_of(j)`: of the points of `fixed`; `is_same(i, j)`: whether both may be of one surface.
+template <typename NormalOf, typename IsSame, typename Visit>
 std::size_t visit_places(PointView moved, PointView fixed, const PointGrid& grid, double v,
-                         const Transformation& fixed_from_moved, const NormalOf& normal_of, const Visit& visit) {
+                         const Transformation& fixed_from_moved, const NormalOf& normal_of, const IsSame& is_same,
+                         const Visit& visit) {
   const double reach = std::hypot(max_tangential, max_normal) * v;
   const std::size_t stride = std::max<std::size_t>(1, moved.size() / max_places);
   std::size_t places = 0;
@@ -28,7 +32,7 @@ std::size_t visit_places(PointView moved, PointView fixed, const PointGrid& grid
     const Eigen::Vector3d difference = p - fixed[j];
     const double normal = std::abs(normal_of(j).dot(difference));
     const double tangential = std::sqrt(std::max(0.0, difference.squaredNorm() - normal * normal));
-    if (tangential < max_tangential * v && normal < max_normal * v) visit(i, normal);
+    if (tangential < max_tangential * v && normal < max_normal * v && is_same(i, j, normal)) visit(i, normal);
   }
   return places;
 }
@@ -56,8 +60,14 @@ SurfaceContact surface_contact(const PreparedCloud& moved, const PreparedCloud& 
     if (normal < touching * v) touching_weight += weight;
     covered += normal < on_surface * v;
   };
-  const std::size_t places =
-      visit_places(moved.features.points, fixed.features.points, fixed.grid, v, fixed_from_moved, normal_of, count);
+  const auto is_same = [&](std::size_t i, std::size_t j, double normal) {
+    const Features &a = moved.features, &b = fixed.features;
+    if (normal < touching * v && std::max(a.curvature[i], b.curvature[j]) > scattered) return true;
+    return !are_two_sides({a.points[i], a.normals[i], a.viewpoint}, {b.points[j], b.normals[j], b.viewpoint},
+                          (fixed_from_moved.linear() * a.normals[i]).dot(b.normals[j]));
+  };
+  const std::size_t places = visit_places(moved.features.points, fixed.features.points, fixed.grid, v, fixed_from_moved,
+                                          normal_of, is_same, count);
   SurfaceContact contact;
   // Two pseudo-observations of each kind: few places prove little.
   const double n = static_cast<double>(met);
@@ -71,6 +81,7 @@ SurfaceOverlap overlap_of(PointView moved, const Surface& fixed, double voxel_si
   SurfaceOverlap overlap;
   overlap.places = visit_places(
       moved, fixed.points(), fixed.grid(), voxel_size, fixed_from_moved, [&](std::size_t j) { return fixed.normal(j); },
+      [](std::size_t, std::size_t, double) { return true; },
       [&](std::size_t, double normal) {
         ++overlap.met;
         overlap.covered += normal < on_surface * voxel_size;

@@ -12,15 +12,15 @@ using testing::Random;
 
 constexpr double voxel_size = 0.1;
 
-Features features_of(const Points& points) {
+Features features_of(const Scan& scan) {
   Options options;
   options.threads = 1;
   options.scale.voxel_size = voxel_size;
-  return extract_features(points, options);
+  return extract_features(scan, options);
 }
 
-/// Contact of two clouds given in one frame, when the first is moved by `motion` first.
-SurfaceContact contact(const Points& moved, const Points& fixed,
+/// Contact of two scans given in one frame, when the first is moved by `motion` first.
+SurfaceContact contact(const Scan& moved, const Scan& fixed,
                        const Transformation& motion = Transformation::Identity()) {
   const Features a = features_of(moved), b = features_of(fixed);
   Transformation local = motion;  // between the centred clouds
@@ -79,6 +79,20 @@ TEST(SurfaceContact, IsLowWhereSurfacesCross) {
     sum += contact(a, b, wrong).share / 10;
   }
   EXPECT_LT(sum, 0.45);
+}
+
+// A thin wall, each side seen from a room of its own: no surface is common to both scans.
+TEST(SurfaceContact, TheOtherSideOfAWallIsNotMet) {
+  Scene scene(7);
+  Points front = scene.sample(), back = scene.sample();
+  for (Eigen::Vector3d& point : back) point.z() -= 0.8 * voxel_size;
+  const Eigen::Vector3d above(0, 0, 100), below(0, 0, -100);
+  const SurfaceContact unknown = contact(front, back), seen = contact({front, above}, {back, below});
+  EXPECT_GT(unknown.overlap, 0.9);
+  EXPECT_LT(seen.overlap, 0.1) << "but for what was seen at a grazing angle";
+  const SurfaceContact half_known = contact({front, above}, back), same_side = contact({front, above}, {back, above});
+  EXPECT_EQ(half_known.share, unknown.share);
+  EXPECT_EQ(same_side.share, unknown.share);
 }
 
 TEST(SurfaceContact, OfCloudsThatDoNotMeetSaysNothing) {
