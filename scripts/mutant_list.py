@@ -92,7 +92,7 @@ MUTANTS = [
     # Contact and verdict
     ("registration/facing.hpp", "cosine < -opposite", "cosine > opposite", "two sides look away from each other"),
     ("registration/facing.hpp", "*viewpoint - point", "*viewpoint", "a normal is turned to the scanner"),
-    ("registration/surface_contact.cpp", "return !are_two_sides(", "return true || !are_two_sides(",
+    ("registration/surface_contact.cpp", "return are_two_sides(", "return false && are_two_sides(",
      "the other side of a wall is not met"),
     ("network/spanning_forest.cpp", "component_from_scan_[j].inverse() *", "component_from_scan_[j] *",
      "where a link puts the other scans"),

@@ -6,7 +6,6 @@ namespace igsp {
 namespace {
 
 constexpr std::size_t most_kept = 16;
-constexpr std::size_t looks = 1000;  // as where a pair is judged
 
 }  // namespace
 
@@ -25,7 +24,7 @@ FreeSpace SeenSpace::at(std::size_t source, std::size_t target, const Transforma
   const Scanned &a = scanned(source), &b = scanned(target);  // of those that are kept the one before stays
   Transformation local = target_from_source;                 // between the centred clouds
   local.translation() += local.linear() * a.features->origin - b.features->origin;
-  return {b.space.violation_by(a.space, local, looks), a.space.violation_by(b.space, local.inverse(), looks)};
+  return free_space_between(a.space, b.space, local);
 }
 
 }  // namespace igsp

@@ -31,6 +31,13 @@ class ScannedSpace {
   std::optional<PointGrid> surface_;  // of the voxels, where any is known
 };
 
+/// Both directions, of those whose viewpoint is known.
+inline FreeSpace free_space_between(const ScannedSpace& source, const ScannedSpace& target,
+                                    const Transformation& target_from_source, std::size_t most_looks = 1000) {
+  return {target.violation_by(source, target_from_source, most_looks),
+          source.violation_by(target, target_from_source.inverse(), most_looks)};
+}
+
 /// What free space says of a pose, as log10 odds that it is right; exactly 0 where no viewpoint is known. `rarity`: how
 /// rare it is among wrong poses of the pair to be contradicted as little [decades]. `weight`: of what that confirms,
 /// [0, 1]. docs/verdict.md tells how the numbers were found.
@@ -48,8 +55,7 @@ class PairSpace {
   bool is_known_of_both() const { return source_.is_known() && target_.is_known(); }
 
   FreeSpace at(const Transformation& target_from_source, std::size_t most_looks = 1000) const {
-    return {target_.violation_by(source_, target_from_source, most_looks),
-            source_.violation_by(target_, target_from_source.inverse(), most_looks)};
+    return free_space_between(source_, target_, target_from_source, most_looks);
   }
 
   /// Of a pose that was proposed. Nearly all of them are wrong, so they tell what it is worth that one is hardly

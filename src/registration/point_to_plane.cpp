@@ -98,7 +98,8 @@ struct Sample {
 };
 
 // visit(p, q, n) for points of the source, [begin, end) of the sample, and their nearest point of the target, where
-// their normals agree and they are not the two sides of a wall: p as moved, n the unit sum of both normals. `scale`: of the source, before the pose.
+// their normals agree and they are not the two sides of a wall: p as moved, n the unit sum of both normals. `scale`: of
+// the source, before the pose.
 template <typename Visit>
 void visit_pairs(const Surface& source, const Surface& target, const Transformation& pose, double scale, double radius,
                  const Sample& sample, std::size_t begin, std::size_t end, Partners* partners, const Visit& visit) {

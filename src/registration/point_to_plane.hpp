@@ -59,9 +59,10 @@ struct PointToPlaneOptions {
 };
 
 /// Fine registration: every step pairs points of the source with their nearest point of the target within the radius
-/// whose normal agrees, unless they were seen from either side, and minimises the distances along the sum of both normals (Rusinkiewicz 2019, symmetric ICP)
-/// under the Geman-McClure loss at half the radius, at the last radius at loss_scale_of the step before. Ends early
-/// where a step finds too few pairs or a free direction. Returns target_from_source.
+/// whose normal agrees, unless they were seen from either side, and minimises the distances along the sum of both
+/// normals (Rusinkiewicz 2019, symmetric ICP) under the Geman-McClure loss at half the radius, at the last radius at
+/// loss_scale_of the step before. Ends early where a step finds too few pairs or a free direction. Returns
+/// target_from_source.
 Transformation refine_point_to_plane(const Surface& source, const Surface& target, const Transformation& initial,
                                      const PointToPlaneOptions& options);
 

@@ -15,12 +15,11 @@ constexpr double touching = 1.0;        // voxels: at a wrong pose of a like sur
 constexpr double on_surface = 1.5;      // voxels
 constexpr float scattered = 0.1f;       // surface variation of foliage, which has no sides
 
-// visit(i, distance along the normal) for the places of `moved`, evenly strided, that meet the surface of `fixed`; how
-// many were tried. `normal_of(j)`: of the points of `fixed`; `is_same(i, j)`: whether both may be of one surface.
-template <typename NormalOf, typename IsSame, typename Visit>
+// visit(i, j, distance along the normal) for the places i of `moved`, evenly strided, that meet the surface of `fixed`
+// at j; how many were tried. `normal_of(j)`: of the points of `fixed`.
+template <typename NormalOf, typename Visit>
 std::size_t visit_places(PointView moved, PointView fixed, const PointGrid& grid, double v,
-                         const Transformation& fixed_from_moved, const NormalOf& normal_of, const IsSame& is_same,
-                         const Visit& visit) {
+                         const Transformation& fixed_from_moved, const NormalOf& normal_of, const Visit& visit) {
   const double reach = std::hypot(max_tangential, max_normal) * v;
   const std::size_t stride = std::max<std::size_t>(1, moved.size() / max_places);
   std::size_t places = 0;
@@ -32,7 +31,7 @@ std::size_t visit_places(PointView moved, PointView fixed, const PointGrid& grid
     const Eigen::Vector3d difference = p - fixed[j];
     const double normal = std::abs(normal_of(j).dot(difference));
     const double tangential = std::sqrt(std::max(0.0, difference.squaredNorm() - normal * normal));
-    if (tangential < max_tangential * v && normal < max_normal * v && is_same(i, j, normal)) visit(i, normal);
+    if (tangential < max_tangential * v && normal < max_normal * v) visit(i, j, normal);
   }
   return places;
 }
@@ -53,21 +52,22 @@ SurfaceContact surface_contact(const PreparedCloud& moved, const PreparedCloud& 
   double touching_weight = 0, weight_sum = 0;
   std::size_t met = 0, covered = 0;
   const auto normal_of = [&](std::size_t j) -> const Eigen::Vector3d& { return fixed.features.normals[j]; };
-  const auto count = [&](std::size_t i, double normal) {
+  const auto are_of_two_sides = [&](std::size_t i, std::size_t j, double normal) {
+    const Features &a = moved.features, &b = fixed.features;
+    if (normal < touching * v && std::max(a.curvature[i], b.curvature[j]) > scattered) return false;
+    return are_two_sides({a.points[i], a.normals[i], a.viewpoint}, {b.points[j], b.normals[j], b.viewpoint},
+                         (fixed_from_moved.linear() * a.normals[i]).dot(b.normals[j]));
+  };
+  const auto count = [&](std::size_t i, std::size_t j, double normal) {
+    if (are_of_two_sides(i, j, normal)) return;
     ++met;
     const double weight = 0.002 + std::min<double>(moved.features.curvature[i], 0.05);
     weight_sum += weight;
     if (normal < touching * v) touching_weight += weight;
     covered += normal < on_surface * v;
   };
-  const auto is_same = [&](std::size_t i, std::size_t j, double normal) {
-    const Features &a = moved.features, &b = fixed.features;
-    if (normal < touching * v && std::max(a.curvature[i], b.curvature[j]) > scattered) return true;
-    return !are_two_sides({a.points[i], a.normals[i], a.viewpoint}, {b.points[j], b.normals[j], b.viewpoint},
-                          (fixed_from_moved.linear() * a.normals[i]).dot(b.normals[j]));
-  };
-  const std::size_t places = visit_places(moved.features.points, fixed.features.points, fixed.grid, v, fixed_from_moved,
-                                          normal_of, is_same, count);
+  const std::size_t places =
+      visit_places(moved.features.points, fixed.features.points, fixed.grid, v, fixed_from_moved, normal_of, count);
   SurfaceContact contact;
   // Two pseudo-observations of each kind: few places prove little.
   const double n = static_cast<double>(met);
@@ -81,8 +81,7 @@ SurfaceOverlap overlap_of(PointView moved, const Surface& fixed, double voxel_si
   SurfaceOverlap overlap;
   overlap.places = visit_places(
       moved, fixed.points(), fixed.grid(), voxel_size, fixed_from_moved, [&](std::size_t j) { return fixed.normal(j); },
-      [](std::size_t, std::size_t, double) { return true; },
-      [&](std::size_t, double normal) {
+      [&](std::size_t, std::size_t, double normal) {
         ++overlap.met;
         overlap.covered += normal < on_surface * voxel_size;
       });
