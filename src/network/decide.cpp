@@ -31,7 +31,8 @@ std::vector<std::size_t> anchors_of(const LinkGraph& graph, std::span<const std:
 WitnessQuestion witnesses(SeenSpace& space, double voxel_size) {
   return [&space, voxel_size](std::size_t source, std::size_t target, Transformation target_from_source) {
     target_from_source.translation() *= voxel_size;
-    return witness_of(space.at(source, target, target_from_source));
+    const std::optional<SeenTogether> seen = space.at(source, target, target_from_source);
+    return seen ? witness_of(*seen) : Witness::none;
   };
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "igsp/network.hpp"
+#include "network/seen_space.hpp"
 #include "network/spanning_forest.hpp"
 
 namespace igsp {
@@ -31,8 +32,9 @@ MeasuredGraph without_unused_refused(const MeasuredGraph& measured, Forest& fore
 /// True of a pair, though refused by itself, that shares many matches and that the free space does not speak against.
 bool may_be_right(const NetworkLink& link, const NetworkOptions& options);
 
-/// What two scans say that would be seen so: in favour where each sees much of the other and nothing in the way.
-Witness witness_of(const FreeSpace& free_space);
+/// What two scans say that would be seen so: in favour where their surfaces meet and nothing of one is in the other's
+/// way. Where they do not meet, each may just be hidden from the other.
+Witness witness_of(const SeenTogether& seen);
 
 /// True where the free space speaks against a pair, so that others must confirm it.
 bool is_doubtful(const NetworkLink& link);

@@ -68,7 +68,7 @@ class Growth {
       for (std::size_t j = 0; j < component_.size(); ++j) {
         if (component_[j] != component_[one.target] || (i == one.source && j == one.target)) continue;
         const Witness witness = witness_of(link, i, j);
-        if (witness == Witness::against) {
+        if (witness == Witness::against || (witness == Witness::doubtful && !one.may_stand_alone)) {
           forest_.is_contradicted[link] = true;
           return false;
         }

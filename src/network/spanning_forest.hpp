@@ -8,8 +8,8 @@
 namespace igsp {
 
 /// What two scans that no link connects say of a join that would put them so: whether one stands in what the other's
-/// scanner saw through.
-enum class Witness { none, in_favour, against };
+/// scanner saw through. Doubtful: hardly, but too much for a link that needs witnesses.
+enum class Witness { none, in_favour, doubtful, against };
 using WitnessQuestion =
     std::function<Witness(std::size_t source, std::size_t target, const Transformation& target_from_source)>;
 

@@ -74,6 +74,18 @@ TEST(SpanningForest, AWeakLinkJoinsWithAsManyWitnessesAsItNeeds) {
   EXPECT_EQ(frames.forest(all_say(Witness::in_favour)).links.size(), 2u);
 }
 
+TEST(SpanningForest, OneDoubtIsTooMuchForALinkThatNeedsWitnesses) {
+  TwoFrames frames;
+  const auto one_doubts = [](std::size_t source, std::size_t target, const Transformation&) {
+    return source == 3 && target == 1 ? Witness::doubtful : Witness::in_favour;
+  };
+  EXPECT_EQ(frames.forest(one_doubts).links.size(), 3u);
+  frames.joining().may_stand_alone = false;
+  frames.joining().witnesses_needed = 1;
+  EXPECT_EQ(frames.forest(all_say(Witness::in_favour)).links.size(), 3u);
+  EXPECT_EQ(frames.forest(one_doubts).links.size(), 2u);
+}
+
 // Two links that say the same confirm each other, but not where both were refused as pairs.
 TEST(SpanningForest, RefusedLinksConfirmNothing) {
   TwoFrames frames;

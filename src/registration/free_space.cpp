@@ -25,6 +25,13 @@ constexpr double convincing_view = 100;       // points in view for half of that
 // Points in view that agree, added to those that are there: few prove little.
 constexpr double assumed_agreeing = 20;
 
+// An even selection of about as many.
+template <typename Look>
+void for_some_of(const Points& points, std::size_t most, const Look& look) {
+  const std::size_t stride = std::max<std::size_t>(1, points.size() / most);
+  for (std::size_t i = 0; i < points.size(); i += stride) look(points[i]);
+}
+
 double conviction_of(const FreeSpaceViolation& violation) {
   const double in_view = static_cast<double>(violation.in_view);
   return in_view / (in_view + convincing_view);
@@ -69,14 +76,21 @@ std::optional<FreeSpaceViolation> ScannedSpace::violation_by(const ScannedSpace&
                                                              std::size_t most_looks) const {
   if (!is_known()) return {};
   FreeSpaceViolation violation;
-  const Points& points = moved.features_.points;
-  const std::size_t stride = std::max<std::size_t>(1, points.size() / most_looks);
-  for (std::size_t i = 0; i < points.size(); i += stride) {
-    const Sight sight = look_at(this_from_moved * points[i]);
+  for_some_of(moved.features_.points, most_looks, [&](const Eigen::Vector3d& point) {
+    const Sight sight = look_at(this_from_moved * point);
     violation.in_view += sight != Sight::out_of_view;
     violation.contradicting += sight == Sight::contradicts;
-  }
+  });
   return violation;
+}
+
+std::size_t ScannedSpace::met_by(const ScannedSpace& moved, const Transformation& this_from_moved,
+                                 std::size_t most_looks) const {
+  if (!is_known()) return 0;
+  std::size_t met = 0;
+  for_some_of(moved.features_.points, most_looks,
+              [&](const Eigen::Vector3d& point) { met += is_on_surface(this_from_moved * point, 1); });
+  return met;
 }
 
 double free_space_evidence(const FreeSpace& free_space, double rarity, double weight) {

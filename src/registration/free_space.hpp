@@ -21,6 +21,9 @@ class ScannedSpace {
   std::optional<FreeSpaceViolation> violation_by(const ScannedSpace& moved, const Transformation& this_from_moved,
                                                  std::size_t most_looks) const;
 
+  /// Of about as many voxels of `moved`, those that lie on the surface here. 0 where no viewpoint is known.
+  std::size_t met_by(const ScannedSpace& moved, const Transformation& this_from_moved, std::size_t most_looks) const;
+
  private:
   enum class Sight { out_of_view, possible, contradicts };
   Sight look_at(const Eigen::Vector3d& point) const;

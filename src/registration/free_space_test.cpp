@@ -103,6 +103,18 @@ TEST(FreeSpace, TwoRoomsWithAWallBetweenThem) {
   EXPECT_GT(violations(source, target, shift(0, 5, 0) * half_turn).violation(), 0.03);
 }
 
+// In view, and yet it says nothing of where it lies: what is hidden by a wall.
+TEST(FreeSpace, WhatIsHiddenBehindAWallDoesNotMeetIt) {
+  const Points scan = two_rooms().seen_from(left_eye, Random(1));
+  const Cloud cloud(Scan{scan, left_eye});
+  const ScannedSpace space(cloud.features);
+  const auto met = [&](double x) { return space.met_by(space, shift(x, 0, 0), 1000); };
+  EXPECT_GE(met(0), 1000u);
+  EXPECT_EQ(met(-30), 0u);
+  EXPECT_EQ(space.violation_by(space, shift(-30, 0, 0), 1000)->contradicting, 0u);
+  EXPECT_GT(space.violation_by(space, shift(-30, 0, 0), 1000)->in_view, 800u);
+}
+
 TEST(FreeSpace, APersonWhoWalksThroughIsForgiven) {
   Boxes busy = two_rooms();
   busy.solids.push_back(box(-3.9, 3.2, 0, -3.4, 3.6, 1.8));

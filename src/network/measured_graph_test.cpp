@@ -1,0 +1,27 @@
+#include "network/measured_graph.hpp"
+
+#include <gtest/gtest.h>
+
+namespace igsp {
+namespace {
+
+SeenTogether seen(std::size_t contradicting, std::size_t meeting) {
+  return {{FreeSpaceViolation{980, contradicting}, FreeSpaceViolation{980, 0}}, meeting};
+}
+
+TEST(MeasuredGraph, WitnessesInFavourMeetAndHaveNothingInTheWay) {
+  EXPECT_EQ(witness_of(seen(0, 30)), Witness::in_favour);
+  EXPECT_EQ(witness_of(seen(2, 1000)), Witness::in_favour);
+  EXPECT_EQ(witness_of(seen(5, 1000)), Witness::none);
+  EXPECT_EQ(witness_of(seen(20, 1000)), Witness::doubtful);
+  EXPECT_EQ(witness_of(seen(70, 1000)), Witness::against);
+}
+
+// A scan that was put far outside of a building is in view of its scanners, behind the walls, and contradicts nothing.
+TEST(MeasuredGraph, ScansThatAreHiddenFromEachOtherBearNoWitness) {
+  EXPECT_EQ(witness_of(seen(0, 0)), Witness::none);
+  EXPECT_EQ(witness_of(seen(0, 29)), Witness::none);
+}
+
+}  // namespace
+}  // namespace igsp
