@@ -56,8 +56,8 @@ struct NetworkOptions {
   /// line (of levelled scans two).
   std::vector<ControlPose> control;
 
-  /// Of how many scans features are kept in memory, besides those that are just worked on. 0: of all. Otherwise a source
-  /// of features is asked for a scan again when it is needed again. The answer does not depend on it.
+  /// Of how many scans features are kept in memory, besides those that are just worked on. 0: of all. Otherwise a
+  /// source of features is asked for a scan again when it is needed again. The answer does not depend on it.
   std::size_t features_in_memory = 0;
 
   PairRule pairs = PairRule::all;
@@ -73,12 +73,22 @@ enum class LinkState {
 };
 std::string_view to_string(LinkState state);
 
-/// A pair that was tried.
+/// What says where a link's source lies.
+enum class LinkOrigin {
+  pair,       ///< both scans, by themselves
+  runner_up,  ///< the pair's second best pose, which the network prefers to its best one
+  merged,     ///< the source and several scans of the target's component at once, merged into one cloud
+};
+std::string_view to_string(LinkOrigin origin);
+
+/// A pair that was tried, or a second look at one.
 struct NetworkLink {
   std::size_t source = 0;  ///< indices of scans
   std::size_t target = 0;
   LinkState state = LinkState::not_registered;
-  std::string reason;                                              ///< one sentence
+  LinkOrigin origin = LinkOrigin::pair;
+  std::vector<std::size_t> merged;  ///< of LinkOrigin::merged: the scans of the merged cloud, the target first
+  std::string reason;               ///< one sentence
   Transformation target_from_source = Transformation::Identity();  ///< as the pair alone has it
   double confidence = 0;                                           ///< of the pair alone, [0, 1]
   double overlap = 0;                                              ///< the smaller of the two directions, [0, 1]
@@ -88,8 +98,13 @@ struct NetworkLink {
   double violation = 0;                                            ///< of free space, [0, 1)
   std::size_t in_view = 0;  ///< voxels of one scan in view of the other, the fewer; 0 unless both viewpoints are known
   std::size_t consistent_triangles = 0;  ///< loops of three registered links that close, with this one in it
+  double cycle_error = 0;                ///< of these loops, that of the one that closes best [sigmas]
   double residual = 0;  ///< RMS displacement of the source's points, pair against network [units of the cloud]
-  Precision precision;  ///< of the pair alone
+  /// Of a link that is used, at the final poses: distances of the source's points from the target's surface along its
+  /// normals, where they lie on each other; median of their sizes and RMS [units of the cloud].
+  double median_distance = 0, rms_distance = 0;
+  Precision precision;                ///< of the pair alone
+  std::optional<RunnerUp> runner_up;  ///< of the pair alone
 };
 
 /// A loop of three registered links.
@@ -97,6 +112,12 @@ struct NetworkCycle {
   std::array<std::size_t, 3> scans{};  ///< ascending
   double error = 0;                    ///< how far it is from closing, in sigmas of its links and what is right anyway
   bool closes = false;                 ///< otherwise one of its links is wrong
+};
+
+/// Two scans of one component that the network puts where the scanner of one saw through the other.
+struct NetworkContradiction {
+  std::array<std::size_t, 2> scans{};  ///< ascending
+  double violation = 0;                ///< of free space, [0, 1)
 };
 
 /// A scan and where it lies.
@@ -120,9 +141,12 @@ struct NetworkScan {
 /// the frame of its first scan unless the options say otherwise.
 struct Network {
   std::vector<NetworkScan> scans;                    ///< in the order given
-  std::vector<NetworkLink> links;                    ///< all pairs that were tried
+  std::vector<NetworkLink> links;                    ///< all pairs that were tried, then second looks
   std::vector<NetworkCycle> cycles;                  ///< all loops of three registered links
   std::vector<std::vector<std::size_t>> components;  ///< scans, ascending; the largest component first
+  /// Of all pairs of scans of one component whose viewpoints are known, at the final poses: those with more than 1 %,
+  /// the worst first. People and leaves make a few percent.
+  std::vector<NetworkContradiction> contradictions;
   double bundle_error = 0;            ///< RMS of the residuals of the links that are used [units of the cloud]
   double voxel_size = 0;              ///< [units of the cloud]
   std::vector<std::string> warnings;  ///< what of the options could not be followed, a sentence each

@@ -184,6 +184,11 @@ void bind_link(nb::module_& module) {
       .def_prop_ro(
           "state", [](const NetworkLink& link) { return to_string(link.state); },
           "used, unconfirmed (used, but in no loop), rejected or not_registered.")
+      .def_prop_ro(
+          "origin", [](const NetworkLink& link) { return to_string(link.origin); },
+          "pair; runner_up, the pair's second best pose; merged, the source and several scans at once.")
+      .def_ro("merged", &NetworkLink::merged,
+              "Where merged: indices of the scans of the merged cloud, the target first.")
       .def_ro("reason", &NetworkLink::reason, "One sentence.")
       .def_prop_ro(
           "target_from_source", [](const NetworkLink& link) { return array_of(link.target_from_source); },
@@ -196,8 +201,13 @@ void bind_link(nb::module_& module) {
       .def_ro("violation", &NetworkLink::violation, "Share of points where the other scanner saw through, [0, 1).")
       .def_ro("in_view", &NetworkLink::in_view, "Voxels of one scan in view of the other; 0 without both viewpoints.")
       .def_ro("consistent_triangles", &NetworkLink::consistent_triangles, "Cycles that close, with this link in them.")
+      .def_ro("cycle_error", &NetworkLink::cycle_error, "Of these cycles, that of the best one [sigmas].")
       .def_ro("residual", &NetworkLink::residual,
               "RMS displacement of the source's points, pair against network [units of the cloud].")
+      .def_ro("median_distance", &NetworkLink::median_distance,
+              "Of the surfaces at the final poses, where they lie on each other; 0 unless used [units of the cloud].")
+      .def_ro("rms_distance", &NetworkLink::rms_distance, "The same, RMS.")
+      .def_ro("runner_up", &NetworkLink::runner_up, "Of the pair alone, or None.")
       .def_ro("precision", &NetworkLink::precision, "Of the pair alone.")
       .def("__repr__", [](const NetworkLink& link) {
         return fmt::format("<NetworkLink {} to {}: {}>", link.source, link.target, to_string(link.state));
@@ -218,19 +228,35 @@ void bind_cycle(nb::module_& module) {
       });
 }
 
+void bind_contradiction(nb::module_& module) {
+  portable_class<NetworkContradiction>(
+      module, "NetworkContradiction",
+      "Two scans of one component that the network puts where the scanner of one saw through the other.")
+      .def_prop_ro(
+          "scans", [](const NetworkContradiction& pair) { return nb::make_tuple(pair.scans[0], pair.scans[1]); },
+          nb::sig("def scans(self) -> tuple[int, int]"), "Their indices, ascending.")
+      .def_ro("violation", &NetworkContradiction::violation, "Of free space, [0, 1).")
+      .def("__repr__", [](const NetworkContradiction& pair) {
+        return fmt::format("<NetworkContradiction {}, {}: {:.3f}>", pair.scans[0], pair.scans[1], pair.violation);
+      });
+}
+
 }  // namespace
 
 void bind_network(nb::module_& module) {
   bind_scan(module);
   bind_link(module);
   bind_cycle(module);
+  bind_contradiction(module);
   portable_class<Network>(module, "Network",
                           "What `network` answers: where every scan lies, and which pairs to trust. Scans that do not\n"
                           "connect stay in components of their own, each with a world of its own.")
       .def_ro("scans", &Network::scans, nb::rv_policy::reference_internal, "In the order given.")
-      .def_ro("links", &Network::links, "All pairs that were tried.")
+      .def_ro("links", &Network::links, "All pairs that were tried, then second looks.")
       .def_ro("cycles", &Network::cycles, "All loops of three registered links.")
       .def_ro("components", &Network::components, "Indices of scans, ascending; the largest component first.")
+      .def_ro("contradictions", &Network::contradictions,
+              "Pairs of scans with more than 1 % in space that was seen through, at the final poses, the worst first.")
       .def_prop_ro(
           "poses",
           [](const Network& network) {

@@ -37,6 +37,9 @@ void fill(Random& random, Cause& value) {
 void fill(Random& random, LinkState& value) {
   value = static_cast<LinkState>(random.bits() % 4);
 }
+void fill(Random& random, LinkOrigin& value) {
+  value = static_cast<LinkOrigin>(random.bits() % 3);
+}
 void fill(Random& random, std::string& value) {
   value = "text \0 and " + std::to_string(random.bits());
 }

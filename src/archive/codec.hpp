@@ -68,6 +68,11 @@ struct Listed<LinkState> {
   static constexpr std::string_view name = "state of a link";
   static constexpr LinkState last = LinkState::not_registered;
 };
+template <>
+struct Listed<LinkOrigin> {
+  static constexpr std::string_view name = "origin of a link";
+  static constexpr LinkOrigin last = LinkOrigin::merged;
+};
 
 template <typename T>
 requires std::is_enum_v<T>

@@ -74,8 +74,15 @@ void require_consistent(const Network& network) {
   require(std::ranges::all_of(network.components,
                               [&](auto& scans) { return !scans.empty() && std::ranges::all_of(scans, is_scan); }),
           "a component without scans, or of one that is not there");
-  require(std::ranges::all_of(network.links, [&](auto& link) { return is_scan(link.source) && is_scan(link.target); }),
+  require(std::ranges::all_of(network.links,
+                              [&](auto& link) {
+                                return is_scan(link.source) && is_scan(link.target) &&
+                                       std::ranges::all_of(link.merged, is_scan);
+                              }),
           "a link of a scan that is not there");
+  require(
+      std::ranges::all_of(network.contradictions, [&](auto& pair) { return std::ranges::all_of(pair.scans, is_scan); }),
+      "a contradiction of a scan that is not there");
 }
 
 }  // namespace igsp::archive

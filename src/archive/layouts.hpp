@@ -286,6 +286,8 @@ struct Layout<NetworkLink> {
       Field{"source", &NetworkLink::source},
       Field{"target", &NetworkLink::target},
       Field{"state", &NetworkLink::state},
+      Field{"origin", &NetworkLink::origin},
+      Field{"merged", &NetworkLink::merged},
       Field{"reason", &NetworkLink::reason},
       Field{"target_from_source", &NetworkLink::target_from_source},
       Field{"confidence", &NetworkLink::confidence},
@@ -296,8 +298,21 @@ struct Layout<NetworkLink> {
       Field{"violation", &NetworkLink::violation},
       Field{"in_view", &NetworkLink::in_view},
       Field{"consistent_triangles", &NetworkLink::consistent_triangles},
+      Field{"cycle_error", &NetworkLink::cycle_error},
       Field{"residual", &NetworkLink::residual},
+      Field{"median_distance", &NetworkLink::median_distance},
+      Field{"rms_distance", &NetworkLink::rms_distance},
       Field{"precision", &NetworkLink::precision},
+      Field{"runner_up", &NetworkLink::runner_up},
+  };
+};
+
+template <>
+struct Layout<NetworkContradiction> {
+  static constexpr std::string_view name = "NetworkContradiction";
+  static constexpr std::tuple fields = {
+      Field{"scans", &NetworkContradiction::scans},
+      Field{"violation", &NetworkContradiction::violation},
   };
 };
 
@@ -319,6 +334,7 @@ struct Layout<Network> {
       Field{"links", &Network::links},
       Field{"cycles", &Network::cycles},
       Field{"components", &Network::components},
+      Field{"contradictions", &Network::contradictions},
       Field{"bundle_error", &Network::bundle_error},
       Field{"voxel_size", &Network::voxel_size},
       Field{"warnings", &Network::warnings},
@@ -328,7 +344,7 @@ struct Layout<Network> {
 using AllStructs = std::tuple<StrayPoints, ScanPart, ScannedPart, Features, KeypointMatch, IterationRecord,
                               CloudSummary, FreeDirection, Precision, FreeSpaceViolation, FreeSpace, Evidence, RunnerUp,
                               Result, Diagnosis, PoseError, MatchQuality, SimilarityResult, SimulatedScan,
-                              ViewpointFinding, NetworkScan, NetworkLink, NetworkCycle, Network>;
+                              ViewpointFinding, NetworkScan, NetworkLink, NetworkCycle, NetworkContradiction, Network>;
 
 template <typename T>
 concept HasLayout = requires {

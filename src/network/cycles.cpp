@@ -11,7 +11,6 @@ namespace {
 
 // Two links from copies of the same room support each other, and both stand in what a scanner saw through.
 bool proves_nothing(const LinkGraph& graph, std::span<const LinkStep> loop) {
-  if (std::ranges::any_of(loop, [&](const LinkStep& step) { return graph.links[step.link].is_refused; })) return true;
   return std::ranges::count_if(loop, [&](const LinkStep& step) { return graph.links[step.link].is_doubtful; }) > 1;
 }
 
@@ -25,6 +24,7 @@ std::vector<Triangle> triangles(const LinkGraph& graph) {
   // Links of a scan to later ones, so that every triangle is met once, at its first scan.
   std::vector<std::map<std::size_t, std::size_t>> later(graph.centres.size());
   for (std::size_t l = 0; l < graph.links.size(); ++l) {
+    if (graph.links[l].confirms_nothing) continue;
     const auto [first, second] = std::minmax(graph.links[l].source, graph.links[l].target);
     later[first].emplace(second, l);
   }
@@ -53,6 +53,7 @@ std::vector<CycleSupport> cycle_support(const LinkGraph& graph, const std::vecto
       CycleSupport& entry = found[triangle.links[i]];
       ++(triangle.closes() ? entry.triangles : entry.open);
       if (triangle.closes()) {
+        entry.best_error = std::min(entry.best_error, triangle.error);
         entry.support += trust * std::min(graph.links[triangle.links[(i + 1) % 3]].weight,
                                           graph.links[triangle.links[(i + 2) % 3]].weight);
       }

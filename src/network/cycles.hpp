@@ -9,9 +9,10 @@ namespace igsp {
 
 /// What loops of three links say of a link.
 struct CycleSupport {
-  std::size_t triangles = 0;  ///< those that close
-  std::size_t open = 0;       ///< those that do not: one of their three links is wrong
-  double support = 0;         ///< sum of the weaker other link's weight, for a triangle that closes exactly
+  std::size_t triangles = 0;           ///< those that close
+  std::size_t open = 0;                ///< those that do not: one of their three links is wrong
+  double best_error = max_loop_error;  ///< squared, the smallest of those that close
+  double support = 0;                  ///< sum of the weaker other link's weight, for a triangle that closes exactly
 };
 
 /// A loop of three links, none of it proven by copies of one room alone.

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <set>
 
 #include "network/components.hpp"
 #include "network/cycles.hpp"
@@ -90,10 +93,9 @@ std::string why_apart(const NetworkLink& link, bool is_contradicted, const Netwo
 }
 
 void name_states(Network& network, const MeasuredGraph& measured, const BalancedPoses& poses,
-                 const std::vector<CycleSupport>& support, const std::vector<bool>& is_contradicted,
-                 const NetworkOptions& options) {
+                 const std::vector<CycleSupport>& support, const Forest& forest, const NetworkOptions& options) {
   for (NetworkLink& link : network.links) {
-    if (link.state == LinkState::not_registered || !contradicts_free_space(link)) continue;
+    if (link.state != LinkState::unconfirmed || !contradicts_free_space(link)) continue;
     link.state = LinkState::rejected;
     link.reason = fmt::format("{:.0f} % of the points lie where the other scanner saw through", 100 * link.violation);
   }
@@ -101,6 +103,7 @@ void name_states(Network& network, const MeasuredGraph& measured, const Balanced
   for (std::size_t l = 0; l < measured.link_of.size(); ++l) {
     NetworkLink& link = network.links[measured.link_of[l]];
     link.consistent_triangles = support[l].triangles;
+    link.cycle_error = support[l].triangles > 0 ? std::sqrt(support[l].best_error) : 0;
     if (poses.errors[l] < max_loop_error) {
       used.push_back(l);
       continue;
@@ -110,18 +113,29 @@ void name_states(Network& network, const MeasuredGraph& measured, const Balanced
     link.reason = std::isfinite(poses.errors[l])
                       ? fmt::format("the other links of the network put the pair {:.1f} sigma elsewhere",
                                     std::sqrt(poses.errors[l]))
-                      : why_apart(link, is_contradicted[l], options);
+                      : why_apart(link, forest.is_contradicted[l], options);
   }
-  const std::vector<Edge> edges = edges_of(measured.graph, used);
-  network.components = connected_components(network.scans.size(), edges);
-  const std::vector<bool> in_no_loop = bridges(network.scans.size(), edges);
-  for (std::size_t k = 0; k < used.size(); ++k) {
-    NetworkLink& link = network.links[measured.link_of[used[k]]];
+  network.components = connected_components(network.scans.size(), edges_of(measured.graph, used));
+  // What confirms nothing closes no loop for others. It is in one itself where the tree does without it.
+  std::vector<std::size_t> confirming;
+  std::ranges::copy_if(used, std::back_inserter(confirming),
+                       [&](std::size_t l) { return !measured.graph.links[l].confirms_nothing; });
+  const std::vector<bool> in_no_loop = bridges(network.scans.size(), edges_of(measured.graph, confirming));
+  std::set<std::size_t> unconfirmed(forest.links.begin(), forest.links.end());
+  for (std::size_t k = 0; k < confirming.size(); ++k) {
+    if (in_no_loop[k]) {
+      unconfirmed.insert(confirming[k]);
+    } else {
+      unconfirmed.erase(confirming[k]);
+    }
+  }
+  for (const std::size_t l : used) {
+    NetworkLink& link = network.links[measured.link_of[l]];
     if (link.state == LinkState::not_registered) {
       link.reason =
           "refused as a pair, used since nothing in the network or in the free space speaks against it: " + link.reason;
     }
-    link.state = in_no_loop[k] ? LinkState::unconfirmed : LinkState::used;
+    link.state = unconfirmed.contains(l) ? LinkState::unconfirmed : LinkState::used;
   }
 }
 
@@ -131,13 +145,13 @@ void decide(Network& network, std::span<const ScanShape> shapes, SeenSpace* spac
   const MeasuredGraph all = measured_graph(network.links, shapes, network.voxel_size, options);
   Forest forest = spanning_forest(all.graph, cycle_support(all.graph, triangles(all.graph)),
                                   space ? witnesses(*space, network.voxel_size) : WitnessQuestion());
-  const MeasuredGraph measured = without_unused_refused(all, forest);
+  const MeasuredGraph measured = without_unused_refused(all, network.links, options, forest);
   const std::vector<Triangle> loops = triangles(measured.graph);
   for (const Triangle& loop : loops) network.cycles.push_back({loop.scans, std::sqrt(loop.error), loop.closes()});
   const std::vector<CycleSupport> support = cycle_support(measured.graph, loops);
   const BalancedPoses poses =
       balance_poses(measured.graph, forest.links, anchors_of(measured.graph, forest.links, options));
-  name_states(network, measured, poses, support, forest.is_contradicted, options);
+  name_states(network, measured, poses, support, forest, options);
   place_scans(network, poses, shapes, options);
 }
 

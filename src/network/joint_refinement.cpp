@@ -1,5 +1,7 @@
 #include "network/joint_refinement.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -56,6 +58,12 @@ class SharedSurface {
   std::optional<Surface> surface_;
 };
 
+// Two scans whose surfaces pull at each other: those of a link, or its source and one of those merged.
+struct Meeting {
+  NetworkLink* link;
+  std::size_t target;
+};
+
 class Bundle {
  public:
   Bundle(Network& network, FeatureShelf& features, std::span<const Eigen::Vector3d> stations,
@@ -65,8 +73,10 @@ class Bundle {
     poses_.resize(scans, Transformation::Identity());
     is_free_.resize(scans, false);
     take_surfaces(features);
-    for (const NetworkLink& link : network.links) {
-      if (link.state == LinkState::used || link.state == LinkState::unconfirmed) links_.push_back(&link);
+    for (NetworkLink& link : network.links) {
+      if (link.state != LinkState::used && link.state != LinkState::unconfirmed) continue;
+      if (link.merged.empty()) meetings_.push_back({&link, link.target});
+      for (const std::size_t target : link.merged) meetings_.push_back({&link, target});
     }
     for (std::size_t c = 0; c < network.components.size(); ++c) {
       const std::vector<std::size_t>& component = network.components[c];
@@ -86,13 +96,15 @@ class Bundle {
   }
 
   void run() {
-    if (links_.empty()) return;
-    loss_scales_.assign(links_.size(), 0.0);
+    if (meetings_.empty()) return;
+    loss_scales_.assign(meetings_.size(), 0.0);
     for (int k = 0; k < max_joint_steps; ++k) {
       const auto steps = linearise(k == 0 ? first_radius : joint_radius).solve();
       if (!steps || apply_steps(*steps, centres_, poses_) < small_joint_step) break;
     }
-    write_back(equations_of([this](std::size_t l) { return final_factor(*links_[l]); }).covariances());
+    distances_.resize(meetings_.size());
+    write_back(equations_of([this](std::size_t m) { return final_factor(meetings_[m], distances_[m]); }).covariances());
+    write_distances();
   }
 
  private:
@@ -126,14 +138,14 @@ class Bundle {
   }
 
   PoseEquations linearise(double radius) {
-    return equations_of([&](std::size_t l) { return factor(*links_[l], radius, loss_scales_[l]); });
+    return equations_of([&](std::size_t m) { return factor(meetings_[m], radius, loss_scales_[m]); });
   }
 
-  template <typename FactorOfLink>
-  PoseEquations equations_of(const FactorOfLink& factor_of) const {
-    std::vector<RelativeFactor> factors(links_.size());
-    parallel_blocks(links_.size(), threads_, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t l = begin; l < end; ++l) factors[l] = factor_of(l);
+  template <typename FactorOfMeeting>
+  PoseEquations equations_of(const FactorOfMeeting& factor_of) const {
+    std::vector<RelativeFactor> factors(meetings_.size());
+    parallel_blocks(meetings_.size(), threads_, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t m = begin; m < end; ++m) factors[m] = factor_of(m);
     });
     PoseEquations equations(centres_, is_free_, options_.pair.degrees_of_freedom);
     for (const RelativeFactor& one : factors) equations.add(one);
@@ -143,11 +155,12 @@ class Bundle {
 
   // At the poses as they are, and nothing but the damping. The larger one moves, as it did when the pair was
   // registered.
-  RelativeFactor factor_between(const NetworkLink& link) const {
-    const bool exchanged = surfaces_[link.target]->voxels() > surfaces_[link.source]->voxels();
+  RelativeFactor factor_between(const Meeting& meeting) const {
+    const std::size_t source = meeting.link->source, target = meeting.target;
+    const bool exchanged = surfaces_[target]->voxels() > surfaces_[source]->voxels();
     RelativeFactor factor;
-    factor.source = exchanged ? link.target : link.source;
-    factor.target = exchanged ? link.source : link.target;
+    factor.source = exchanged ? target : source;
+    factor.target = exchanged ? source : target;
     factor.target_from_source = poses_[factor.target].inverse() * poses_[factor.source];
     factor.information.diagonal().head<3>().setConstant(surfaces_[factor.source]->squared_size() / (damping * damping));
     factor.information.diagonal().tail<3>().setConstant(1 / (damping * damping));
@@ -155,8 +168,8 @@ class Bundle {
   }
 
   // The loss follows the residuals of the step before, as it does where a pair is refined.
-  RelativeFactor factor(const NetworkLink& link, double radius, double& loss_scale) const {
-    RelativeFactor result = factor_between(link);
+  RelativeFactor factor(const Meeting& meeting, double radius, double& loss_scale) const {
+    RelativeFactor result = factor_between(meeting);
     const Linearisation at_pose = linearise_at(surfaces_[result.source]->surface(), surfaces_[result.target]->surface(),
                                                result.target_from_source, radius, max_link_points, 1, loss_scale);
     loss_scale = loss_scale_of(at_pose.residual_variance, joint_radius, 1);
@@ -169,11 +182,12 @@ class Bundle {
   }
 
   // With how much the gradient scatters, patches of surface counting as one measurement each, as for a pair by itself.
-  RelativeFactor final_factor(const NetworkLink& link) const {
-    RelativeFactor result = factor_between(link);
+  RelativeFactor final_factor(const Meeting& meeting, std::vector<double>& distances) const {
+    RelativeFactor result = factor_between(meeting);
     const std::vector<PlanePair> pairs =
         plane_pairs_at(surfaces_[result.source]->surface(), surfaces_[result.target]->surface(),
                        result.target_from_source, joint_radius, max_link_points);
+    for (const PlanePair& pair : pairs) distances.push_back(std::abs(pair.residual));
     result.scatter = result.information;
     if (pairs.size() < min_link_pairs) return result;
     const PoseCovariance at_pose = pose_covariance(pairs, joint_radius, 1);
@@ -206,12 +220,31 @@ class Bundle {
     }
   }
 
+  // Of a link, over all scans that its source was registered with.
+  void write_distances() {
+    for (std::size_t m = 0; m < meetings_.size();) {
+      NetworkLink& link = *meetings_[m].link;
+      std::vector<double> all;
+      for (; m < meetings_.size() && meetings_[m].link == &link; ++m) {
+        all.insert(all.end(), distances_[m].begin(), distances_[m].end());
+      }
+      if (all.empty()) continue;
+      double squares = 0;
+      for (const double distance : all) squares += distance * distance;
+      link.rms_distance = network_.voxel_size * std::sqrt(squares / static_cast<double>(all.size()));
+      const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+      std::nth_element(all.begin(), middle, all.end());
+      link.median_distance = network_.voxel_size * *middle;
+    }
+  }
+
   Network& network_;
   std::span<const Eigen::Vector3d> stations_;
   const NetworkOptions& options_;
   int threads_;
-  std::vector<const NetworkLink*> links_;
-  std::vector<double> loss_scales_;  ///< by link, [voxels]; 0: not known yet
+  std::vector<Meeting> meetings_;               // those of one link one after the other
+  std::vector<double> loss_scales_;             ///< by meeting, [voxels]; 0: not known yet
+  std::vector<std::vector<double>> distances_;  // by meeting, [voxels]
   std::vector<const ControlPose*> control_;
   std::vector<Transformation> poses_;
   std::vector<bool> is_free_;

@@ -20,8 +20,8 @@ struct GraphLink {
   bool may_stand_alone = true;              ///< joins scans without a loop that confirms it
   /// Or at least with so many witnesses: other scans that it brings together and that say so (WitnessQuestion).
   std::optional<std::size_t> witnesses_needed;
-  bool is_refused = false;   ///< as a pair: it confirms nothing and is there for its witnesses alone
-  bool is_doubtful = false;  ///< something speaks against it: it does not confirm others like it
+  bool confirms_nothing = false;  ///< in no loop that would: refused as a pair, or a second look at what was tried
+  bool is_doubtful = false;       ///< something speaks against it: it does not confirm others like it
 };
 
 /// Scans (their centres, in their own frames) and links.

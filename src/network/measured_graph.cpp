@@ -83,7 +83,8 @@ GraphLink graph_link(const NetworkLink& link, const ScanShape& source, double vo
   result.weight = std::clamp(std::log(odds), least_weight, greatest_weight);
   result.may_stand_alone = may_stand_alone(link, options);
   result.witnesses_needed = witnesses_needed(link);
-  result.is_refused = link.state == LinkState::not_registered && !may_be_right(link, options);
+  result.confirms_nothing =
+      link.origin != LinkOrigin::pair || (link.state == LinkState::not_registered && !may_be_right(link, options));
   result.is_doubtful = is_doubtful(link);
   return result;
 }
@@ -125,20 +126,23 @@ MeasuredGraph measured_graph(std::span<const NetworkLink> links, std::span<const
   for (std::size_t i = 0; i < links.size(); ++i) {
     const bool is_there =
         links[i].state != LinkState::not_registered || may_be_right(links[i], options) || witnesses_needed(links[i]);
-    if (!is_there || contradicts_free_space(links[i])) continue;
+    if (!is_there || links[i].state == LinkState::rejected || contradicts_free_space(links[i])) continue;
     measured.graph.links.push_back(graph_link(links[i], shapes[links[i].source], voxel_size, options));
     measured.link_of.push_back(i);
   }
   return measured;
 }
 
-MeasuredGraph without_unused_refused(const MeasuredGraph& measured, Forest& forest) {
+MeasuredGraph without_unused_refused(const MeasuredGraph& measured, std::span<const NetworkLink> links,
+                                     const NetworkOptions& options, Forest& forest) {
   const LinkGraph& all = measured.graph;
   MeasuredGraph kept{{all.centres, {}, all.degrees_of_freedom}, {}};
   std::vector<bool> is_contradicted;
   std::vector<std::size_t> renumbered(all.links.size());
   for (std::size_t l = 0; l < all.links.size(); ++l) {
-    if (all.links[l].is_refused && std::ranges::find(forest.links, l) == forest.links.end()) continue;
+    const NetworkLink& link = links[measured.link_of[l]];
+    const bool is_refused = link.state == LinkState::not_registered && !may_be_right(link, options);
+    if (is_refused && std::ranges::find(forest.links, l) == forest.links.end()) continue;
     renumbered[l] = kept.link_of.size();
     kept.graph.links.push_back(all.links[l]);
     kept.link_of.push_back(measured.link_of[l]);

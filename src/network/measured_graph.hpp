@@ -17,7 +17,7 @@ struct ScanShape {
 ScanShape shape_of(const Features& features);
 
 /// The pairs among `links` that are registered, may be right or may find witnesses, as a graph in voxels, and which
-/// link each of its links is. A pair that the free space speaks against clearly is left out.
+/// link each of its links is. What is rejected already, or what the free space speaks against clearly, is left out.
 struct MeasuredGraph {
   LinkGraph graph;
   std::vector<std::size_t> link_of;  ///< per link of the graph
@@ -27,7 +27,8 @@ MeasuredGraph measured_graph(std::span<const NetworkLink> links, std::span<const
                              const NetworkOptions& options);
 
 /// Without the refused pairs that the forest did not need; renumbers the links of the forest.
-MeasuredGraph without_unused_refused(const MeasuredGraph& measured, Forest& forest);
+MeasuredGraph without_unused_refused(const MeasuredGraph& measured, std::span<const NetworkLink> links,
+                                     const NetworkOptions& options, Forest& forest);
 
 /// True of a pair, though refused by itself, that shares many matches and that the free space does not speak against.
 bool may_be_right(const NetworkLink& link, const NetworkOptions& options);

@@ -39,6 +39,7 @@ NetworkLink link_of(const ScanPair& pair, const Result& result) {
   link.violation = result.evidence.free_space.violation();
   link.in_view = in_view(result);
   link.precision = result.precision;
+  link.runner_up = result.runner_up;
   return link;
 }
 

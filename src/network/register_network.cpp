@@ -77,6 +77,18 @@ std::string_view to_string(LinkState state) {
   return "unknown";
 }
 
+std::string_view to_string(LinkOrigin origin) {
+  switch (origin) {
+    case LinkOrigin::pair:
+      return "pair";
+    case LinkOrigin::runner_up:
+      return "runner_up";
+    case LinkOrigin::merged:
+      return "merged";
+  }
+  return "unknown";
+}
+
 Network register_network(std::size_t scans, const FeatureSource& features, const NetworkOptions& options,
                          const ProgressCallback& progress, const PairStore& store) {
   check(options);

@@ -58,6 +58,11 @@ class Growth {
     return best != proposals.end() ? std::optional(*best) : std::nullopt;
   }
 
+  // In no loop, and too weak to join by itself.
+  bool needs_witnesses(std::size_t link) const {
+    return !graph_.links[link].may_stand_alone && support_[link].triangles == 0;
+  }
+
   // Without a loop: by what the scans of both components say that no link connects.
   bool stands(std::size_t link) {
     const GraphLink& one = graph_.links[link];
@@ -93,6 +98,8 @@ class Growth {
 
   // What the links between two components agree on.
   std::optional<Proposal> elect(std::vector<std::size_t>& links, std::size_t first_component) {
+    std::erase_if(links, [&](std::size_t l) { return needs_witnesses(l) && forest_.is_contradicted[l]; });
+    if (links.empty()) return {};
     std::stable_sort(links.begin(), links.end(), [&](auto a, auto b) { return vote(a) > vote(b); });
     if (links.size() > max_votes) links.resize(max_votes);
     const std::size_t n = links.size();
@@ -109,15 +116,28 @@ class Growth {
     std::size_t group = 0;
     bool is_doubtful = true;
     for (std::size_t i = 0; i < n; ++i) {
-      if (agree[winner][i] && !graph_.links[links[i]].is_refused) ++group;
+      if (agree[winner][i] && !graph_.links[links[i]].confirms_nothing) ++group;
       if (agree[winner][i] && !graph_.links[links[i]].is_doubtful) is_doubtful = false;
       if (!agree[winner][i]) rival = std::max(rival, votes[i]);
     }
     const bool confirmed = (group > 1 && !is_doubtful) || support_[links[winner]].triangles > 0;
-    if (votes[winner] < outweighs * rival) return {};
+    if (votes[winner] < outweighs * rival) {
+      return hear_witnesses_against(links) ? elect(links, first_component) : std::nullopt;
+    }
     const GraphLink& one = graph_.links[links[winner]];
     if (!confirmed && !one.may_stand_alone && !one.witnesses_needed) return {};
     return Proposal{links[winner], confirmed, votes[winner]};
+  }
+
+  // Of links that disagree. True where some of them are out of it.
+  bool hear_witnesses_against(const std::vector<std::size_t>& links) {
+    bool any = false;
+    for (const std::size_t l : links) {
+      if (!needs_witnesses(l)) continue;
+      stands(l);
+      any |= forest_.is_contradicted[l];
+    }
+    return any;
   }
 
   bool agrees(std::size_t a, std::size_t b, std::size_t first_component) const {

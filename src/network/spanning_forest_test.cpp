@@ -92,7 +92,7 @@ TEST(SpanningForest, RefusedLinksConfirmNothing) {
   frames.graph.links.push_back(link_between(frames.truth, 3, 1));
   for (const std::size_t l : {2, 3}) frames.graph.links[l].may_stand_alone = false;
   EXPECT_EQ(frames.forest().links.size(), 3u);
-  for (const std::size_t l : {2, 3}) frames.graph.links[l].is_refused = true;
+  for (const std::size_t l : {2, 3}) frames.graph.links[l].confirms_nothing = true;
   EXPECT_EQ(frames.forest().links.size(), 2u);
 }
 

@@ -34,6 +34,8 @@ Json link_summary(const NetworkLink& link) {
   return {{"source", link.source},
           {"target", link.target},
           {"state", to_string(link.state)},
+          {"origin", to_string(link.origin)},
+          {"merged", link.merged},
           {"reason", link.reason},
           {"confidence", link.confidence},
           {"overlap", link.overlap},
@@ -42,11 +44,14 @@ Json link_summary(const NetworkLink& link) {
           {"agreeing_matches", link.agreeing_matches},
           {"violation", link.violation},
           {"consistent_triangles", link.consistent_triangles},
-          {"residual", link.residual}};
+          {"cycle_error", link.cycle_error},
+          {"residual", link.residual},
+          {"median_distance", link.median_distance},
+          {"rms_distance", link.rms_distance}};
 }
 
 Json network_json(const Network& network, const NetworkOptions& options) {
-  Json scans = Json::array(), links = Json::array(), cycles = Json::array();
+  Json scans = Json::array(), links = Json::array(), cycles = Json::array(), contradictions = Json::array();
   for (const NetworkScan& scan : network.scans) {
     scans.push_back({{"name", scan.name},
                      {"problem", scan.problem.empty() ? Json(nullptr) : Json(scan.problem)},
@@ -59,6 +64,9 @@ Json network_json(const Network& network, const NetworkOptions& options) {
   }
   for (const NetworkCycle& cycle : network.cycles) {
     cycles.push_back({{"scans", cycle.scans}, {"error", cycle.error}, {"closes", cycle.closes}});
+  }
+  for (const NetworkContradiction& pair : network.contradictions) {
+    contradictions.push_back({{"scans", pair.scans}, {"violation", pair.violation}});
   }
   for (const NetworkLink& link : network.links) {
     Json entry = link_summary(link);
@@ -75,6 +83,7 @@ Json network_json(const Network& network, const NetworkOptions& options) {
           {"scans", scans},
           {"links", links},
           {"cycles", cycles},
+          {"contradictions", contradictions},
           {"min_unconfirmed_confidence", options.min_unconfirmed_confidence},
           {"min_unconfirmed_matches", options.min_unconfirmed_matches},
           {"options", to_json(options.pair)}};

@@ -56,17 +56,35 @@ std::string poses_csv(const Network& network) {
 
 std::string links_csv(const Network& network) {
   std::string table =
-      "source,target,state,confidence,overlap,rmse,mutual_matches,agreeing_matches,violation,consistent_triangles,"
-      "residual,"
+      "source,target,state,origin,confidence,overlap,rmse,mutual_matches,agreeing_matches,violation,"
+      "consistent_triangles,cycle_error,residual,median_distance,rms_distance,"
       "qw,qx,qy,qz,tx,ty,tz,reason\n";
   for (const NetworkLink& link : network.links) {
     const Eigen::Quaterniond q = rotation_of(link.target_from_source);
     const Eigen::Vector3d& t = link.target_from_source.translation();
-    table += csv_line({network.scans[link.source].name, network.scans[link.target].name,
-                       std::string(to_string(link.state)), text(link.confidence), text(link.overlap), text(link.rmse),
-                       std::to_string(link.mutual_matches), std::to_string(link.agreeing_matches), text(link.violation),
-                       std::to_string(link.consistent_triangles), text(link.residual), text(q.w()), text(q.x()),
-                       text(q.y()), text(q.z()), text(t.x()), text(t.y()), text(t.z()), link.reason});
+    table += csv_line({network.scans[link.source].name,
+                       network.scans[link.target].name,
+                       std::string(to_string(link.state)),
+                       std::string(to_string(link.origin)),
+                       text(link.confidence),
+                       text(link.overlap),
+                       text(link.rmse),
+                       std::to_string(link.mutual_matches),
+                       std::to_string(link.agreeing_matches),
+                       text(link.violation),
+                       std::to_string(link.consistent_triangles),
+                       text(link.cycle_error),
+                       text(link.residual),
+                       text(link.median_distance),
+                       text(link.rms_distance),
+                       text(q.w()),
+                       text(q.x()),
+                       text(q.y()),
+                       text(q.z()),
+                       text(t.x()),
+                       text(t.y()),
+                       text(t.z()),
+                       link.reason});
   }
   return table;
 }
