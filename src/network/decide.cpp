@@ -39,14 +39,6 @@ WitnessQuestion witnesses(SeenSpace& space, double voxel_size) {
   };
 }
 
-// RMS displacement of the source's points between the pair's own answer and the network's.
-double displacement(const NetworkLink& link, const Network& network, const ScanShape& shape) {
-  const Transformation difference = network.scans[link.target].world_from_scan.inverse() *
-                                    network.scans[link.source].world_from_scan * link.target_from_source.inverse();
-  const Vector6 step = step_about(link.target_from_source * shape.centre, difference);
-  return std::sqrt(step.tail<3>().squaredNorm() + 2.0 / 3.0 * step.head<3>().squaredNorm() * shape.size * shape.size);
-}
-
 // The frame of its anchor is a component's world, and the covariance that of a motion in the world.
 void place_scans(Network& network, const BalancedPoses& poses, std::span<const ScanShape> shapes,
                  const NetworkOptions& options) {
@@ -141,6 +133,14 @@ void name_states(Network& network, const MeasuredGraph& measured, const Balanced
 
 }  // namespace
 
+double displacement(const Network& network, std::size_t source, std::size_t target,
+                    const Transformation& target_from_source, const ScanShape& shape) {
+  const Transformation difference = network.scans[target].world_from_scan.inverse() *
+                                    network.scans[source].world_from_scan * target_from_source.inverse();
+  const Vector6 step = step_about(target_from_source * shape.centre, difference);
+  return std::sqrt(step.tail<3>().squaredNorm() + 2.0 / 3.0 * step.head<3>().squaredNorm() * shape.size * shape.size);
+}
+
 void decide(Network& network, std::span<const ScanShape> shapes, SeenSpace* space, const NetworkOptions& options) {
   const MeasuredGraph all = measured_graph(network.links, shapes, network.voxel_size, options);
   Forest forest = spanning_forest(all.graph, cycle_support(all.graph, triangles(all.graph)),
@@ -163,7 +163,7 @@ void measure_residuals(Network& network, std::span<const ScanShape> shapes) {
         network.scans[link.source].component != network.scans[link.target].component) {
       continue;
     }
-    link.residual = displacement(link, network, shapes[link.source]);
+    link.residual = displacement(network, link.source, link.target, link.target_from_source, shapes[link.source]);
     if (link.state == LinkState::rejected) continue;
     squares += link.residual * link.residual;
     ++count;

@@ -16,10 +16,9 @@ constexpr double pull_floor = 0.1;  // [voxels]
 constexpr double judging_floor = 0.7;  // [voxels]
 
 // Right poses have at most 0.05 and half of them 0.002 (docs/network.md). Up to the first, seen well, nothing speaks
-// against a pair; beyond the second it does not confirm others like it; beyond the third it needs others to confirm it;
-// beyond the last it is out.
+// against a pair; beyond doubtful_violation it does not confirm others like it; beyond the second it needs others to
+// confirm it; beyond the last it is out.
 constexpr double clear_violation = 0.002;
-constexpr double doubtful_violation = 0.01;
 constexpr double lonely_violation = 0.06;
 constexpr double forbidden_violation = 0.12;
 constexpr std::size_t least_in_view = 100;
@@ -79,8 +78,7 @@ GraphLink graph_link(const NetworkLink& link, const ScanShape& source, double vo
   const Matrix6 covariance = in_voxels(link.precision.covariance, voxel_size);
   result.information = (covariance + floor_of(pull_floor, source.size / voxel_size)).inverse();
   result.tolerance = covariance + floor_of(judging_floor, source.size / voxel_size);
-  const double odds = link.confidence / std::max(1e-12, 1 - link.confidence);
-  result.weight = std::clamp(std::log(odds), least_weight, greatest_weight);
+  result.weight = vote_of(link.confidence);
   result.may_stand_alone = may_stand_alone(link, options);
   result.witnesses_needed = witnesses_needed(link);
   result.confirms_nothing =
@@ -108,6 +106,10 @@ Witness witness_of(const SeenTogether& seen) {
   if (violation > lonely_violation) return Witness::against;
   if (violation > doubtful_violation) return Witness::doubtful;
   return violation <= clear_violation && seen.meeting >= least_meeting ? Witness::in_favour : Witness::none;
+}
+
+double vote_of(double confidence) {
+  return std::clamp(std::log(confidence / std::max(1e-12, 1 - confidence)), least_weight, greatest_weight);
 }
 
 bool is_doubtful(const NetworkLink& link) {

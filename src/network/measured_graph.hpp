@@ -37,6 +37,13 @@ bool may_be_right(const NetworkLink& link, const NetworkOptions& options);
 /// way. Where they do not meet, each may just be hidden from the other.
 Witness witness_of(const SeenTogether& seen);
 
+/// Of free space: beyond it others must confirm a pair, for right poses have at most half of it but for people and
+/// leaves.
+inline constexpr double doubtful_violation = 0.01;
+
+/// Log odds of a confidence as links count them in votes, within bounds.
+double vote_of(double confidence);
+
 /// True where the free space speaks against a pair, so that others must confirm it.
 bool is_doubtful(const NetworkLink& link);
 

@@ -24,6 +24,14 @@ std::size_t in_view(const Result& result) {
   return space.source && space.target ? std::min(space.source->in_view, space.target->in_view) : 0;
 }
 
+// A pair that nobody has registered yet, with what it takes.
+struct OpenPair {
+  std::size_t number;  // among those that were asked for
+  std::shared_ptr<const Features> source, target;
+};
+
+}  // namespace
+
 NetworkLink link_of(const ScanPair& pair, const Result& result) {
   NetworkLink link;
   link.source = pair.first;
@@ -42,14 +50,6 @@ NetworkLink link_of(const ScanPair& pair, const Result& result) {
   link.runner_up = result.runner_up;
   return link;
 }
-
-// A pair that nobody has registered yet, with what it takes.
-struct OpenPair {
-  std::size_t number;  // among those that were asked for
-  std::shared_ptr<const Features> source, target;
-};
-
-}  // namespace
 
 std::vector<ScanPair> all_pairs(const std::vector<NetworkScan>& scans) {
   std::vector<ScanPair> pairs;

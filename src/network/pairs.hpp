@@ -16,6 +16,9 @@ std::vector<ScanPair> all_pairs(const std::vector<NetworkScan>& scans);
 /// not there or paired with itself.
 std::vector<ScanPair> listed_pairs(const std::vector<NetworkScan>& scans, std::span<const ScanPair> given);
 
+/// What a network keeps of a pair's answer; unconfirmed where it is registered.
+NetworkLink link_of(const ScanPair& pair, const Result& result);
+
 /// Registers pairs, several at a time, each on one thread. Of the features those of a few pairs are held at once.
 /// The store is told of all of them first; what it has is taken from it, the rest is kept in it. `report` gets the
 /// share done and may throw to stop.

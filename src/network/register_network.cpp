@@ -6,12 +6,16 @@
 #include "igsp/errors.hpp"
 #include "igsp/network.hpp"
 #include "network/common_scale.hpp"
+#include "network/contradictions.hpp"
 #include "network/control.hpp"
 #include "network/decide.hpp"
 #include "network/feature_shelf.hpp"
 #include "network/joint_refinement.hpp"
 #include "network/likely_pairs.hpp"
+#include "network/merged_neighbours.hpp"
 #include "network/pairs.hpp"
+#include "network/runners_up.hpp"
+#include "network/settle.hpp"
 
 namespace igsp {
 namespace {
@@ -61,6 +65,41 @@ Gathered gather(FeatureShelf& shelf, std::size_t count, const ProgressCallback& 
   return gathered;
 }
 
+std::vector<NetworkLink> registered_pairs(const Network& network, FeatureShelf& shelf,
+                                          std::span<const ScanShape> shapes, const NetworkOptions& options,
+                                          const PairStore& store, const ProgressCallback& progress) {
+  const auto report = [&](double done) { report_progress(progress, "pairs", done); };
+  std::vector<NetworkLink> links;
+  if (options.pairs == PairRule::automatic) {
+    links = register_likely_pairs(network, shelf, shapes, options, store, report);
+  } else {
+    const bool all = options.pairs == PairRule::all;
+    links = register_pairs(all ? all_pairs(network.scans) : listed_pairs(network.scans, options.listed_pairs), shelf,
+                           options.pair, store, report);
+  }
+  report(1);
+  return links;
+}
+
+// At second best poses, then at scans alone against merged neighbours. Where pairs are listed nothing else is tried.
+Network look_again(const Network& start, Network network, std::vector<NetworkLink>& links, FeatureShelf& shelf,
+                   std::span<const ScanShape> shapes, SeenSpace& space, const NetworkOptions& options,
+                   const ProgressCallback& progress) {
+  const auto take = [&](const std::vector<NetworkLink>& more) {
+    if (more.empty()) return false;
+    links.insert(links.end(), more.begin(), more.end());
+    network = settled(start, links, shapes, space, options);
+    return true;
+  };
+  take(runners_up(network, shelf, shapes, options));
+  if (options.pairs == PairRule::listed) return network;
+  MergedNeighbours neighbours(shelf, options);
+  const auto report = [&](double done) { report_progress(progress, "neighbours", done); };
+  while (take(neighbours.next(network, report))) {
+  }
+  return network;
+}
+
 }  // namespace
 
 std::string_view to_string(LinkState state) {
@@ -96,27 +135,19 @@ Network register_network(std::size_t scans, const FeatureSource& features, const
   FeatureShelf shelf(scans, features, options.features_in_memory);
   Gathered gathered = gather(shelf, scans, progress);
   const auto& [_, shapes, stations, voxel_size] = gathered;
-  Network network;
-  network.scans = std::move(gathered.scans);
-  network.voxel_size = voxel_size;
-  const auto report_pairs = [&](double done) { report_progress(progress, "pairs", done); };
-  if (options.pairs == PairRule::automatic) {
-    network.links = register_likely_pairs(network, shelf, shapes, options, store, report_pairs);
-  } else {
-    const bool all = options.pairs == PairRule::all;
-    network.links = register_pairs(all ? all_pairs(network.scans) : listed_pairs(network.scans, options.listed_pairs),
-                                   shelf, options.pair, store, report_pairs);
-  }
-  report_progress(progress, "pairs", 1);
-  {
-    SeenSpace space(shelf);
-    decide(network, shapes, &space, options);
-  }
+  Network start;
+  start.scans = std::move(gathered.scans);
+  start.voxel_size = voxel_size;
+  std::vector<NetworkLink> links = registered_pairs(start, shelf, shapes, options, store, progress);
+  SeenSpace space(shelf);
+  Network network = settled(start, links, shapes, space, options);
+  network = look_again(start, std::move(network), links, shelf, shapes, space, options, progress);
   report_progress(progress, "network", 0);
   const std::vector<bool> placed = move_to_control(network, stations, options);
   if (options.pair.refinement.enabled) refine_jointly(network, shelf, stations, options, placed);
   measure_control(network, stations, options, placed);
   measure_residuals(network, shapes);
+  network.contradictions = contradictions_at(network, space);
   report_progress(progress, "network", 1);
   return network;
 }

@@ -17,6 +17,14 @@ std::size_t count(const Network& network, LinkState state) {
   return std::ranges::count_if(network.links, [&](const NetworkLink& link) { return link.state == state; });
 }
 
+bool is_pair(const NetworkLink& link) {
+  return link.origin == LinkOrigin::pair;
+}
+
+bool is_registered_pair(const NetworkLink& link) {
+  return is_pair(link) && link.state != LinkState::not_registered;
+}
+
 // "26 in one frame, 2 in another"
 std::string groups(const Network& network) {
   std::string text;
@@ -110,8 +118,9 @@ std::string network_summary(const Network& network) {
   const std::size_t unconfirmed = count(network, LinkState::unconfirmed),
                     rejected = count(network, LinkState::rejected);
   text += fmt::format("\n{} of {} pairs registered, {} rejected by the network, {} {} unconfirmed (in no loop)",
-                      network.links.size() - count(network, LinkState::not_registered), network.links.size(), rejected,
-                      unconfirmed, unconfirmed == 1 ? "link is" : "links are");
+                      std::ranges::count_if(network.links, is_registered_pair),
+                      std::ranges::count_if(network.links, is_pair), rejected, unconfirmed,
+                      unconfirmed == 1 ? "link is" : "links are");
   if (placed > 0) text += fmt::format("; bundle error {:.3g}", network.bundle_error);
   return text + "\n";
 }
