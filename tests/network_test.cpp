@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -156,6 +157,31 @@ TEST(Network, SameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(one.scans[i].world_from_scan.matrix(), three.scans[i].world_from_scan.matrix());
     EXPECT_EQ(one.scans[i].covariance, three.scans[i].covariance);
   }
+}
+
+// What the sixth station shares with each of the others is too little, in thin scans 20 m apart.
+TEST(Network, AScanThatNoPairPlacesIsTriedAgainstMergedNeighbours) {
+  const auto site = simulate("park", {.stations = 8, .points = 6000, .station_distance = 20, .seed = 2});
+  NetworkOptions options;
+  options.pair.scale.voxel_size = 0.94;
+  const std::vector<Scan> scans = views(site);
+  const Network network = register_network(std::span<const Scan>(scans), options);
+  ASSERT_EQ(network.components.size(), 1u);
+  const auto merged = std::ranges::find(network.links, LinkOrigin::merged, &NetworkLink::origin);
+  ASSERT_NE(merged, network.links.end());
+  EXPECT_EQ(merged->source, 5u);
+  EXPECT_EQ(merged->state, LinkState::unconfirmed);
+  EXPECT_EQ(merged->merged.size(), 7u);
+  EXPECT_EQ(merged->merged[0], merged->target);
+  const Transformation truth = site[0].world_from_scanner.inverse() * site[5].world_from_scanner;
+  EXPECT_LT(pose_error(network.scans[5].world_from_scan, truth, {0, 0, 0}).translation, 0.3);
+  options.pairs = PairRule::listed;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) options.listed_pairs.emplace_back(i, j);
+  }
+  const Network pairs_alone = register_network(std::span<const Scan>(scans), options);
+  EXPECT_EQ(pairs_alone.components.size(), 2u);
+  EXPECT_EQ(pairs_alone.components[1], std::vector<std::size_t>{5});
 }
 
 TEST(Network, LikelyPairsPlaceTheSameScansWithFewerTries) {

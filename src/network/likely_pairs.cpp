@@ -23,6 +23,10 @@ constexpr double likely_overlap = 0.3;
 // one that has not enough links, one that has.
 constexpr std::size_t patience_alone = 8, patience_unsettled = 5, patience_settled = 2;
 
+// For a link in no loop: pairs that would close one, of scans that share at least this much, so many at most.
+constexpr double confirming_overlap = 0.05;
+constexpr std::size_t tries_to_confirm = 3;
+
 constexpr double expected_tries = 6;  // a scan; only for the progress
 
 // As all_pairs has it.
@@ -53,6 +57,10 @@ class PairSearch {
       for (const std::size_t j : inside(i)) chosen.insert(pair_of(i, j));
       if (const std::optional<std::size_t> j = outside(i)) chosen.insert(pair_of(i, *j));
     }
+    for (const NetworkLink& link : now_.links) {
+      if (link.state != LinkState::unconfirmed) continue;
+      if (const std::optional<ScanPair> pair = confirming(link)) chosen.insert(*pair);
+    }
     return {chosen.begin(), chosen.end()};
   }
 
@@ -64,7 +72,12 @@ class PairSearch {
     confirmed_.assign(n_, 0);
     in_vain_.assign(n_, 0);
     tried_.clear();
+    linked_.assign(n_, {});
     for (const NetworkLink& link : now_.links) {
+      if (link.state == LinkState::used || link.state == LinkState::unconfirmed) {
+        linked_[link.source].push_back(link.target);
+        linked_[link.target].push_back(link.source);
+      }
       tried_.emplace(link.source, link.target);
       const bool apart = now_.scans[link.source].component != now_.scans[link.target].component;
       for (const std::size_t end : {link.source, link.target}) {
@@ -78,14 +91,40 @@ class PairSearch {
     return i != j && start_.scans[j].problem.empty() && !tried_.contains(pair_of(i, j));
   }
 
+  double overlap_now(std::size_t i, std::size_t j) const {
+    return shared_space(spaces_[i], now_.scans[i].world_from_scan, spaces_[j], now_.scans[j].world_from_scan);
+  }
+
+  // The pair that should overlap most of those that would close a loop of three with a link in none.
+  std::optional<ScanPair> confirming(const NetworkLink& link) const {
+    std::set<ScanPair> candidates;
+    for (const std::size_t i : linked_[link.source]) {
+      if (i != link.target) candidates.insert(pair_of(i, link.target));
+    }
+    for (const std::size_t i : linked_[link.target]) {
+      if (i != link.source) candidates.insert(pair_of(i, link.source));
+    }
+    std::size_t tried = 0;
+    std::optional<ScanPair> best;
+    double most = confirming_overlap;
+    for (const ScanPair& pair : candidates) {
+      if (tried_.contains(pair)) {
+        ++tried;
+      } else if (const double overlap = overlap_now(pair.first, pair.second); overlap > most) {
+        best = pair;
+        most = overlap;
+      }
+    }
+    return tried < tries_to_confirm ? best : std::nullopt;
+  }
+
   // Of its component: those that should overlap most.
   std::vector<std::size_t> inside(std::size_t i) const {
     if (confirmed_[i] >= enough_links) return {};
     std::vector<std::pair<double, std::size_t>> candidates;
     for (const std::size_t j : now_.components[now_.scans[i].component]) {
       if (!may_try(i, j)) continue;
-      const double overlap =
-          shared_space(spaces_[i], now_.scans[i].world_from_scan, spaces_[j], now_.scans[j].world_from_scan);
+      const double overlap = overlap_now(i, j);
       if (overlap >= likely_overlap) candidates.emplace_back(-overlap, j);
     }
     std::ranges::sort(candidates);
@@ -120,6 +159,7 @@ class PairSearch {
   std::vector<Space> spaces_;
   Network now_;
   std::set<ScanPair> tried_;
+  std::vector<std::vector<std::size_t>> linked_;  // scans by scan, of the links that are used
   std::vector<std::size_t> confirmed_, in_vain_;  // links of a scan
 };
 

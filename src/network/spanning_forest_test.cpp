@@ -86,6 +86,22 @@ TEST(SpanningForest, OneDoubtIsTooMuchForALinkThatNeedsWitnesses) {
   EXPECT_EQ(frames.forest(one_doubts).links.size(), 2u);
 }
 
+// Of two weak links that say different things the one that a witness is against is no rival.
+TEST(SpanningForest, WeakLinksThatDisagreeHearTheWitnessesAgainstThem) {
+  TwoFrames frames;
+  frames.joining().may_stand_alone = false;
+  frames.joining().witnesses_needed = 1;
+  GraphLink other = frames.joining();
+  other.target_from_source.translation().x() += 20;
+  frames.graph.links.push_back(other);
+  const auto against_the_other = [&](std::size_t source, std::size_t target, const Transformation& target_from_source) {
+    const Transformation truth = frames.truth[target].inverse() * frames.truth[source];
+    return (target_from_source.matrix() - truth.matrix()).norm() < 1e-6 ? Witness::in_favour : Witness::against;
+  };
+  EXPECT_EQ(frames.forest(all_say(Witness::in_favour)).links.size(), 2u);
+  EXPECT_EQ(frames.forest(against_the_other).links, (std::vector<std::size_t>{0, 1, 2}));
+}
+
 // Two links that say the same confirm each other, but not where both were refused as pairs.
 TEST(SpanningForest, RefusedLinksConfirmNothing) {
   TwoFrames frames;
