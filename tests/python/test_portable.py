@@ -45,6 +45,16 @@ def bound_things(pair, features, result, truth):
     network = igsp.network(site, target_points=3000)
     yield igsp.align_similarity(*pair)
     yield from [network, network.scans[1], network.links[0], network.cycles[0]]
+    yield igsp.network(with_a_lorry(site), viewpoints=[scan.viewpoint for scan in site], target_points=3000).contradictions[0]
+
+
+def with_a_lorry(site):
+    """In the second scan, where the first one's scanner saw through."""
+    first, second = site[0].world_from_scanner, site[1].world_from_scanner
+    lorry = np.random.default_rng(0).uniform(-2.5, 2.5, size=(3000, 3)) + [3, 0, 0]
+    second_from_first = np.linalg.inv(second) @ first
+    seen = igsp.transform_points(second_from_first, lorry)
+    return [site[0].points, np.vstack([site[1].points, seen]), site[2].points]
 
 
 CLASSES = {name for name in igsp.__all__ if getattr(getattr(igsp, name), "__module__", "") == "igsp._core"}
