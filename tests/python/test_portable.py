@@ -53,7 +53,7 @@ def with_a_lorry(site):
     first, second = site[0].world_from_scanner, site[1].world_from_scanner
     lorry = np.random.default_rng(0).uniform(-2.5, 2.5, size=(3000, 3)) + [3, 0, 0]
     second_from_first = np.linalg.inv(second) @ first
-    seen = igsp.transform_points(second_from_first, lorry)
+    seen = igsp.transform_points(lorry, second_from_first)
     return [site[0].points, np.vstack([site[1].points, seen]), site[2].points]
 
 
