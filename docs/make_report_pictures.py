@@ -8,6 +8,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import time
 
 here = pathlib.Path(__file__).resolve().parent
 sys.path.append(str(here.parent / "tests"))
@@ -24,6 +25,8 @@ def take_network(igsp: pathlib.Path, folder: pathlib.Path, browser: webdriver.Ch
                     "6000"], cwd=folder, capture_output=True)
     browser.set_window_size(1180, 960)
     browser.get(f"file://{folder / 'survey/report.html'}")
+    browser.execute_script("document.querySelector('[data-look=oblique]').click()")
+    time.sleep(0.5)  # it draws before the next frame
     browser.save_screenshot(str(here / "images" / "network.png"))
 
 

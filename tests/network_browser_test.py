@@ -1,13 +1,20 @@
 """The page of a network in a real browser, headless Chromium. usage: network_browser_test.py IGSP [unittest arguments]"""
+import base64
 import csv
+import json
+import math
 import os
 import shutil
+import statistics
+import struct
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
@@ -22,9 +29,14 @@ canvas.width = picture.width; canvas.height = picture.height;
 const context = canvas.getContext('2d', {willReadFrequently: true});
 context.drawImage(picture, 0, 0);
 const pixels = context.getImageData(0, 0, canvas.width, canvas.height).data;
-let drawn = 0, sum = 0;
-for (let i = 3; i < pixels.length; i += 4) if (pixels[i] > 0) { ++drawn; sum = (sum * 31 + i) % 9007199254; }
-return {share: 4 * drawn / pixels.length, sum};
+let drawn = 0, sum = 0, colours = 0;
+for (let i = 3; i < pixels.length; i += 4) {
+  if (pixels[i] === 0) continue;
+  ++drawn;
+  sum = (sum * 31 + i) % 9007199254;
+  colours = (colours * 31 + pixels[i - 3] + 256 * pixels[i - 2]) % 9007199254;
+}
+return {share: 4 * drawn / pixels.length, sum, colours};
 """
 
 
@@ -56,6 +68,14 @@ def make_pages(folder):
          "--min-unconfirmed-matches", "100000", code=1)
 
 
+def world_points(scan):
+    """What is drawn of a scan of the page's data."""
+    numbers = base64.b64decode(scan["points_drawn"])
+    local = struct.iter_unpack("<3f", numbers)
+    moved = ([a + b for a, b in zip(scan["origin"], p)] for p in local)
+    return [tuple(row[3] + sum(a * b for a, b in zip(row, p)) for row in scan["world_from_scan"][:3]) for p in moved]
+
+
 class Page(unittest.TestCase):
     def open(self, name):
         self.browser.get(f"file://{self.folder / name / 'report.html'}")
@@ -79,7 +99,33 @@ class Page(unittest.TestCase):
             return list(csv.DictReader(file))
 
     def rows(self, table):
-        return [[cell.text for cell in row.find_elements(By.TAG_NAME, "td")] for row in self.all(f"#{table} tr")[1:]]
+        return [[cell.text for cell in row.find_elements(By.TAG_NAME, "td")]
+                for row in self.all(f"#{table} tr:not(.below)")[1:]]
+
+    def titles(self, table):
+        return [title.text for title in self.all(f"#{table} th")]
+
+    def sort_by(self, table, title):
+        """The cells of the column, after a click on its title."""
+        column = self.titles(table).index(title)
+        self.all(f"#{table} th button")[column].click()
+        return [row[column] for row in self.rows(table)]
+
+    def drawn(self):
+        """What is in the canvas, once what changed is drawn."""
+        self.browser.execute_async_script("const done = arguments[0]; requestAnimationFrame(() => setTimeout(done))")
+        return self.script(DRAWN)
+
+    def choose(self, name, value):
+        self.script("arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('change'))",
+                    self.find(name), value)
+
+    def stations_drawn(self):
+        self.drawn()
+        return [[float(circle.get_attribute(name)) for name in ("cx", "cy")] for circle in self.all("#map circle")]
+
+    def data(self):
+        return json.loads(self.script("return document.getElementById('data').textContent"))
 
 
 class Survey(Page):
@@ -112,7 +158,7 @@ class Survey(Page):
         """Ratios of distances on the screen are those of the table's positions, seen from above: the park is level."""
         positions = [[float(x) for x in row[2].split(", ")] for row in self.rows("stations")
                      if row[0].startswith("station_")]
-        drawn = [[float(circle.get_attribute(name)) for name in ("cx", "cy")] for circle in self.all("#map circle")]
+        drawn = self.stations_drawn()
 
         def apart(p, a, b):
             return ((p[a][0] - p[b][0]) ** 2 + (p[a][1] - p[b][1]) ** 2) ** 0.5
@@ -122,16 +168,117 @@ class Survey(Page):
             self.assertAlmostEqual(apart(drawn, a, b) / scale / apart(positions, a, b), 1, delta=0.05)
 
     def test_points_are_drawn_and_can_be_hidden(self):
-        self.assertGreater(self.script(DRAWN)["share"], 0.01)
+        self.assertGreater(self.drawn()["share"], 0.01)
         self.toggle("show-points")
-        self.assertEqual(self.script(DRAWN)["share"], 0)
+        self.assertEqual(self.drawn()["share"], 0)
         self.toggle("show-names")
         self.assertEqual(self.all("#map text"), [])
 
     def test_another_direction_is_another_map(self):
-        before = self.script(DRAWN)["sum"]
-        self.script("const up = document.getElementById('up'); up.value = 'y'; up.dispatchEvent(new Event('change'))")
-        self.assertNotEqual(self.script(DRAWN)["sum"], before)
+        before = self.drawn()["sum"]
+        self.choose("up", "y")
+        self.assertNotEqual(self.drawn()["sum"], before)
+
+    def stage(self):
+        """All of it in view: places on it are told from its middle."""
+        self.script("arguments[0].scrollIntoView({block: 'center'})", self.find("stage"))
+        return self.find("stage")
+
+    def drag(self, dx, dy, start=(-250, -60)):
+        ActionChains(self.browser, 50).move_to_element_with_offset(self.stage(), *start).click_and_hold().move_by_offset(
+            dx / 2, dy / 2).move_by_offset(dx / 2, dy / 2).release().perform()
+
+    def test_dragging_turns_the_map_and_a_button_turns_it_back(self):
+        above, places = self.drawn(), self.stations_drawn()
+        self.drag(80, -60)
+        self.assertNotEqual(self.drawn()["sum"], above["sum"])
+        self.assertNotEqual(self.stations_drawn(), places)
+        self.all("[data-look=above]")[0].click()
+        self.assertEqual(self.drawn(), above)
+        self.assertEqual(self.stations_drawn(), places)
+
+    def test_seen_from_the_side_a_level_park_is_flat(self):
+        def height():
+            heights = [y for _, y in self.stations_drawn()]
+            return max(heights) - min(heights)
+
+        above = height()
+        for _ in range(12):  # of 7.5 degrees
+            self.find("points").send_keys(Keys.ARROW_DOWN)
+        self.assertLess(height(), above / 5)
+        self.assertGreater(self.drawn()["share"], 0.002)
+
+    def test_wheel_and_keys_zoom(self):
+        def apart():
+            (ax, ay), (bx, by) = self.stations_drawn()[:2]
+            return ((ax - bx) ** 2 + (ay - by) ** 2) ** 0.5
+
+        stage, before, scrolled = self.stage(), apart(), self.script("return scrollY")
+        ActionChains(self.browser).scroll_from_origin(ScrollOrigin.from_element(stage), 0, -100).perform()
+        self.assertAlmostEqual(apart() / before, 1.15, places=6)
+        self.assertEqual(self.script("return scrollY"), scrolled)
+        self.find("points").send_keys("-")
+        self.assertAlmostEqual(apart() / before, 1, places=6)
+
+    def test_dragging_from_a_link_is_no_click(self):
+        self.drawn()
+        middle = self.script("""
+            const stage = arguments[0].getBoundingClientRect();
+            const middles = [...document.querySelectorAll('#map line')].map((line) => {
+              const box = line.getBoundingClientRect();
+              return [line, Math.round(box.x + box.width / 2), Math.round(box.y + box.height / 2)];
+            });
+            const [, x, y] = middles.find(([line, x, y]) => document.elementFromPoint(x, y) === line);
+            return [x - stage.x - stage.width / 2, y - stage.y - stage.height / 2];""", self.stage())
+        self.drag(30, -30, middle)
+        self.assertEqual(self.all(".chosen"), [])
+        self.all("[data-look=above]")[0].click()
+        self.drawn()
+        ActionChains(self.browser).move_to_element_with_offset(self.stage(), *middle).click().perform()
+        self.assertEqual(len(self.all("line.chosen")), 1)
+
+    def test_colours_by_distance(self):
+        by_station = self.drawn()
+        self.assertFalse(self.find("scale").is_displayed())
+        self.choose("colour", "distance")
+        by_distance = self.drawn()
+        self.assertEqual(by_distance["sum"], by_station["sum"])
+        self.assertNotEqual(by_distance["colours"], by_station["colours"])
+        farthest = self.data()["farthest_coloured"]
+        self.assertIn(f"{farthest:.3g} units or more", self.find("scale").text)
+        self.assertIn("along the normal", self.find("map-note").text)
+        self.choose("colour", "station")
+        self.assertEqual(self.drawn(), by_station)
+
+    def test_distances_are_those_to_the_other_scans(self):
+        """All voxels of so small scans are drawn: a point has a distance where one of another scan of its frame is within
+        reach, and along a normal that is no longer than to the point, mostly far shorter."""
+        data, shares = self.data(), []
+        clouds = [(scan["component"], world_points(scan), base64.b64decode(scan["distances_drawn"] or ""))
+                  for scan in data["scans"]]
+        for frame, points, distances in clouds:
+            self.assertEqual(len(points), len(distances))
+            others = [q for other_frame, other, _ in clouds if other_frame == frame and other is not points for q in other]
+            for p, step in list(zip(points, distances))[::40]:
+                nearest = min((math.dist(p, q) for q in others), default=math.inf)
+                if abs(nearest / data["neighbour_reach"] - 1) < 1e-3:
+                    continue
+                self.assertEqual(step == 255, nearest > data["neighbour_reach"])
+                distance = step / 254 * data["farthest_coloured"]
+                self.assertTrue(step == 255 or distance <= nearest + data["farthest_coloured"] / 254)
+                shares += [distance / nearest] if step < 254 else []
+        self.assertGreater(len(shares), 100)
+        self.assertLess(statistics.median(shares), 0.5)
+
+    def test_the_chosen_pair_alone(self):
+        self.assertFalse(self.find("pair-only").is_enabled())
+        self.all("#links tr.used td")[0].click()
+        everything = self.drawn()
+        self.toggle("pair-only")
+        pair = self.drawn()
+        self.assertLess(pair["share"], everything["share"])
+        self.assertGreater(pair["share"], 0)
+        self.assertEqual(len(self.all("#map line.chosen")), 1)
 
     def test_click_and_keyboard_choose_a_link(self):
         lines = self.all("#map line")
@@ -139,7 +286,7 @@ class Survey(Page):
         said = self.find("link-text").text
         self.assertRegex(said, r"station_\d – station_\d: \w+")
         self.assertRegex(said, r"igsp align \S*scans/station_\d.ply \S*scans/station_\d.ply --voxel-size 0\.\d+ --html")
-        self.assertEqual(len(self.all("tr.chosen")), 1)
+        self.assertEqual(len(self.all("tr.chosen:not(.below)")), 1)
         lines[1].send_keys(Keys.ENTER)
         self.assertNotEqual(self.find("link-text").text, said)
         self.assertEqual(len(self.all("line.chosen")), 1)
@@ -160,9 +307,34 @@ class Survey(Page):
         self.assertNotEqual(stations["torn"][8], "")
 
     def test_a_title_sorts_its_column(self):
-        self.script("document.querySelectorAll('#links th button')[4].click()")
-        overlaps = [float(row[4].rstrip(" %")) for row in self.rows("links")]
-        self.assertEqual(overlaps, sorted(overlaps, reverse=True))
+        for title in ("Overlap", "Median", "RMS", "Cycle error"):
+            numbers = [float(text.rstrip(" %").replace("–", "0")) for text in self.sort_by("links", title)]
+            self.assertGreater(len(set(numbers)), 1, title)
+            self.assertEqual(numbers, sorted(numbers, reverse=True), title)
+        weakest = [max(map(float, text.split(", "))) for text in self.sort_by("links", "Sigma x, y, z")]
+        self.assertEqual(weakest, sorted(weakest, reverse=True))
+        self.assertGreater(weakest[-1], 0)
+
+    def test_links_say_how_far_the_clouds_lie_apart(self):
+        median, rms, cycle = map(self.titles("links").index, ("Median", "RMS", "Cycle error"))
+        of = {(link["source"], link["target"]): link for link in self.links()}
+        rows = [row for row in self.rows("links") if row[2] == "used"]
+        self.assertGreater(len(rows), 2)
+        for row in rows:
+            link = of[f"scans/{row[0]}.ply", f"scans/{row[1]}.ply"]
+            for column, name in ((median, "median_distance"), (rms, "rms_distance"), (cycle, "cycle_error")):
+                self.assertAlmostEqual(float(row[column]) / float(link[name]), 1, delta=0.06, msg=name)
+
+    def test_loops_and_contradictions_are_listed(self):
+        network = json.loads((self.folder / "survey/network.json").read_text())
+        errors = [float(text) for text in self.sort_by("loops", "Error [sigmas]")]
+        self.assertGreater(len(errors), 0)
+        self.assertEqual(len(errors), len(network["cycles"]))
+        self.assertAlmostEqual(errors[0] / max(cycle["error"] for cycle in network["cycles"]), 1, delta=0.06)
+        opened = sum(not cycle["closes"] for cycle in network["cycles"])
+        self.assertIn("not close" if opened else "close", self.find("loops-text").text)
+        self.assertEqual(len(self.rows("contradictions")), len(network["contradictions"]))
+        self.assertRegex(self.find("contradictions-text").text, "^None: " if not network["contradictions"] else r"^\d+ pair")
 
     def test_nothing_is_wider_than_a_small_laptop_or_a_phone(self):
         self.addCleanup(self.browser.set_window_size, 1280, 900)
@@ -187,7 +359,9 @@ class Doubted(Page):
         rows = self.rows("links")
         self.assertEqual(len(rows), 1)
         self.assertEqual(rows[0][2], "rejected")
-        self.assertIn("too few to stand alone", rows[0][10])
+        self.assertIn("too few to stand alone", self.all("#links .below")[0].text)
+        self.assertIn("No three scans", self.find("loops-text").text)
+        self.assertIn("Not known", self.find("contradictions-text").text)
 
 
 if __name__ == "__main__":

@@ -156,6 +156,8 @@ int run_network(const NetworkSettings& settings) {
   };
   Network network = register_network(reading.files.size(), features, options, progress, store.pairs());
   stop_if_interrupted();
+  measure_drawn(
+      drawn, network, [&](std::size_t i) { return store.features(i, progress); }, options.pair.threads);
   bar.finish();
   for (std::size_t i = 0; i < network.scans.size(); ++i) network.scans[i].name = reading.files[i].string();
   for (const std::string& warning : network.warnings) {

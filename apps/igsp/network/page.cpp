@@ -13,17 +13,31 @@
 namespace igsp::cli {
 namespace {
 
-constexpr std::size_t points_of_a_page = 60'000;  // 12 bytes each: the page of a usual survey stays below 2 MB
-constexpr std::size_t least_points = 300, most_points = 4000;
-
 // Most pairs of a large survey do not overlap; the page shows the more likely ones of them, links.csv all.
 constexpr std::size_t most_refused = 500;
+
+constexpr std::size_t most_rows = 200;  // of loops and of contradictions, the worst first; network.json has all
+
+// Colours of distances end here [voxels]: of registered scans nearly all surfaces are closer.
+constexpr double farthest_coloured = 0.5;
+constexpr std::uint8_t no_other_scan = 255;
 
 std::string bytes_of(const std::vector<float>& numbers) {
   std::vector<std::uint8_t> bytes;
   for (const float number : numbers) {
     const auto word = std::bit_cast<std::uint32_t>(number);
     for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::uint8_t>(word >> shift));
+  }
+  return base64(bytes);
+}
+
+// 0 to 254 in 254ths of the farthest that has a colour of its own.
+Json distances_of(const DrawnScan& drawn, double voxel_size) {
+  if (drawn.distances.empty()) return nullptr;
+  std::vector<std::uint8_t> bytes;
+  for (const float distance : drawn.distances) {
+    const double share = std::min(1.0, distance / (farthest_coloured * voxel_size));
+    bytes.push_back(std::isinf(distance) ? no_other_scan : static_cast<std::uint8_t>(std::lround(254.0 * share)));
   }
   return base64(bytes);
 }
@@ -41,7 +55,53 @@ Json scan_entry(const Network& network, std::size_t i, const DrawnScan& drawn) {
           {"station", row(drawn.station)},
           {"station_known", drawn.station_known},
           {"origin", row(drawn.origin)},
-          {"points_drawn", bytes_of(drawn.points)}};
+          {"points_drawn", bytes_of(drawn.points)},
+          {"distances_drawn", distances_of(drawn, network.voxel_size)}};
+}
+
+// Standard deviations of the pair's translation along the target's axes: null where it was not determined, and of an
+// axis along which a direction is free, which has no standard deviation.
+Json translation_sigma(const Precision& precision) {
+  constexpr double along = 0.1;  // of a unit length
+  if (precision.covariance.isZero(0)) return nullptr;
+  Json sigma = Json::array();
+  for (int axis = 3; axis < 6; ++axis) {
+    const bool is_free = std::ranges::any_of(precision.free_directions, [&](const FreeDirection& direction) {
+      return std::abs(direction.motion[axis]) > along;
+    });
+    sigma.push_back(is_free ? Json(nullptr) : Json(std::sqrt(std::max(0.0, precision.covariance(axis, axis)))));
+  }
+  return sigma;
+}
+
+Json link_entry(const NetworkLink& link) {
+  Json entry = link_summary(link), free = Json::array();
+  for (const FreeDirection& direction : link.precision.free_directions) free.push_back(direction.description);
+  entry["translation_sigma"] = translation_sigma(link.precision);
+  entry["free_directions"] = std::move(free);
+  return entry;
+}
+
+// Those that do not close first, then the worst of the others.
+Json loops_of(const Network& network) {
+  std::vector<NetworkCycle> cycles = network.cycles;
+  std::ranges::stable_sort(cycles, [](const NetworkCycle& a, const NetworkCycle& b) {
+    return a.closes != b.closes ? b.closes : a.error > b.error;
+  });
+  Json shown = Json::array();
+  for (const NetworkCycle& cycle : std::span(cycles).first(std::min(most_rows, cycles.size()))) {
+    shown.push_back({{"scans", cycle.scans}, {"error", cycle.error}, {"closes", cycle.closes}});
+  }
+  return {{"all", cycles.size()}, {"closing", std::ranges::count_if(cycles, &NetworkCycle::closes)}, {"shown", shown}};
+}
+
+Json contradictions_of(const Network& network) {
+  Json shown = Json::array();
+  const std::size_t count = std::min(most_rows, network.contradictions.size());
+  for (const NetworkContradiction& pair : std::span(network.contradictions).first(count)) {
+    shown.push_back({{"scans", pair.scans}, {"violation", pair.violation}});
+  }
+  return {{"all", network.contradictions.size()}, {"shown", shown}};
 }
 
 // Of the links, the most confident first within a state; of the refused not all.
@@ -61,7 +121,7 @@ std::vector<const NetworkLink*> links_shown(const Network& network) {
 Json data_of(const Network& network, const NetworkOptions& options, std::span<const DrawnScan> drawn) {
   Json scans = Json::array(), links = Json::array(), counts = Json::object(), summary = Json::array();
   for (std::size_t i = 0; i < network.scans.size(); ++i) scans.push_back(scan_entry(network, i, drawn[i]));
-  for (const NetworkLink* link : links_shown(network)) links.push_back(link_summary(*link));
+  for (const NetworkLink* link : links_shown(network)) links.push_back(link_entry(*link));
   for (const LinkState state :
        {LinkState::used, LinkState::unconfirmed, LinkState::rejected, LinkState::not_registered}) {
     counts[std::string(to_string(state))] =
@@ -73,31 +133,19 @@ Json data_of(const Network& network, const NetworkOptions& options, std::span<co
           {"summary", summary},
           {"bundle_error", network.bundle_error},
           {"voxel_size", network.voxel_size},
+          {"farthest_coloured", farthest_coloured * network.voxel_size},
+          {"neighbour_reach", neighbour_reach * network.voxel_size},
           {"components", network.components},
           {"scans", scans},
           {"links", links},
+          {"loops", loops_of(network)},
+          {"contradictions", contradictions_of(network)},
           {"counts", counts},
           {"pairs_tried", network.links.size()},
           {"options", to_json(options.pair)}};
 }
 
 }  // namespace
-
-DrawnScan drawn_scan(const Features& features, std::size_t scans) {
-  DrawnScan drawn;
-  drawn.origin = features.origin;
-  drawn.station_known = features.viewpoint.has_value();
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  const std::size_t size = features.points.size();
-  for (const Eigen::Vector3d& point : features.points) centre += point / static_cast<double>(size);
-  drawn.station = features.origin + features.viewpoint.value_or(centre);
-  const std::size_t wanted = std::clamp(points_of_a_page / std::max<std::size_t>(1, scans), least_points, most_points);
-  const std::size_t stride = std::max<std::size_t>(1, size / wanted);
-  for (std::size_t i = 0; i < size; i += stride) {
-    for (const double number : features.points[i]) drawn.points.push_back(static_cast<float>(number));
-  }
-  return drawn;
-}
 
 std::string network_page(const Network& network, const NetworkOptions& options, std::span<const DrawnScan> drawn) {
   return std::string(network_page_head) + inside_script(data_of(network, options, drawn)) +

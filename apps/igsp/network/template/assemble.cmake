@@ -5,5 +5,6 @@ file(READ ${here}/page.html page)
 
 file(READ ${PAIR_TEMPLATE}/style.css pair_style)
 file(READ ${here}/style.css style)
-insert_our_own(${here} "${pair_style}${style}" map main)
+insert_our_own("${pair_style}${style}" ${PAIR_TEMPLATE}/shared.js ${here}/frame.js ${here}/cloud.js ${here}/map.js ${here}/tables.js
+  ${here}/main.js)
 write_page(${OUTPUT} network/page.hpp network_page)

@@ -7,7 +7,7 @@ const count = (n) => n.toLocaleString('en');
 const shortName = (name) => name.replace(/^.*[\\/]/, '').replace(/\.[^.]*$/, '');
 const degrees = 180 / Math.PI;
 const inWords = {used: 'used', unconfirmed: 'unconfirmed', rejected: 'rejected', not_registered: 'not registered'};
-const names = (link) => `${shortName(network.scans[link.source].name)} – ${shortName(network.scans[link.target].name)}`;
+const names = (link) => scanNames([link.source, link.target]);
 const linkTitle = (link) => `${names(link)}: ${inWords[link.state]}, confidence ${link.confidence.toFixed(3)}`;
 const quoted = (text) => /^[\w./:-]+$/.test(text) ? text : `'${text.replace(/'/g, "'\\''")}'`;
 
@@ -34,83 +34,16 @@ function fillVerdict() {
   for (const scan of problems) list.append(element('li', `${shortName(scan.name)}: ${scan.problem}`));
 }
 
-// Columns: title, value to sort by, text, class.
-function fillTable(table, columns, rows, decorate) {
-  let sortedBy = null, ascending = true;
-  const draw = () => {
-    const head = element('tr');
-    columns.forEach((column, c) => {
-      const cell = element('th'), button = element('button', column.title, {type: 'button'});
-      button.addEventListener('click', () => {
-        ascending = sortedBy === c ? !ascending : column.kind !== 'number';
-        sortedBy = c;
-        draw();
-      });
-      cell.append(button);
-      head.append(cell);
-    });
-    const sorted = [...rows()];
-    if (sortedBy !== null) {
-      const value = columns[sortedBy].value, sign = ascending ? 1 : -1;
-      sorted.sort((a, b) => sign * (value(a) < value(b) ? -1 : value(a) > value(b) ? 1 : 0));
-    }
-    const body = sorted.map((row) => {
-      const line = element('tr');
-      for (const column of columns) {
-        const cell = element('td', (column.text ?? column.value)(row), {class: column.kind ?? ''});
-        if (column.decorate) column.decorate(cell, row);
-        line.append(cell);
-      }
-      decorate(line, row);
-      return line;
-    });
-    table.replaceChildren(head, ...body);
-  };
-  draw();
-  return draw;
-}
-
-const linkColumns = [
-  {title: 'Source', value: (l) => shortName(network.scans[l.source].name)},
-  {title: 'Target', value: (l) => shortName(network.scans[l.target].name)},
-  {title: 'State', value: (l) => inWords[l.state], kind: 'state'},
-  {title: 'Confidence', value: (l) => l.confidence, text: (l) => l.confidence.toFixed(3), kind: 'number'},
-  {title: 'Overlap', value: (l) => l.overlap, text: (l) => percent(l.overlap), kind: 'number'},
-  {title: 'RMSE', value: (l) => l.rmse, text: (l) => short(l.rmse), kind: 'number'},
-  {title: 'Matches', value: (l) => l.agreeing_matches, text: (l) => `${l.agreeing_matches} of ${l.mutual_matches}`,
-    kind: 'number'},
-  {title: 'Free space', value: (l) => l.violation, text: (l) => percent(l.violation), kind: 'number'},
-  {title: 'Loops', value: (l) => l.consistent_triangles, kind: 'number'},
-  {title: 'Pair – network', value: (l) => l.residual, text: (l) => l.residual > 0 ? short(l.residual) : '–',
-    kind: 'number'},
-  {title: 'Why', value: (l) => l.reason, kind: 'why'},
-];
-
-const sigma = (scan, from) => Math.sqrt(scan.sigma.slice(from, from + 3).reduce((sum, s) => sum + s * s, 0));
-const stationColumns = [
-  {title: 'Station', value: (s) => shortName(s.name),
-    decorate: (cell, s) => {
-      const swatch = element('i', '', {class: 'station'});
-      swatch.style.background = stationColour(s.index, 55);
-      cell.prepend(swatch);
-    }},
-  {title: 'Frame', value: (s) => s.component + 1, kind: 'number'},
-  {title: 'Position', value: (s) => s.place[0], text: (s) => s.place.map((x) => short(x, 6)).join(', '), kind: 'number',
-    decorate: (cell, s) => { if (!s.station_known) cell.style.fontStyle = 'italic'; }},
-  {title: 'Sigma, position', value: (s) => sigma(s, 3), text: (s) => short(sigma(s, 3), 2), kind: 'number'},
-  {title: 'Sigma, turn [deg]', value: (s) => sigma(s, 0), text: (s) => short(sigma(s, 0) * degrees, 2), kind: 'number'},
-  {title: 'Links used', value: (s) => s.used, kind: 'number'},
-  {title: 'in no loop', value: (s) => s.unconfirmed, kind: 'number'},
-  {title: 'Points', value: (s) => s.points, text: (s) => count(s.points), kind: 'number'},
-  {title: 'Problem', value: (s) => s.problem ?? '', kind: 'why'},
-];
+let chosenLink = null;
 
 function choose(l) {
+  chosenLink = l;
   for (const node of document.querySelectorAll('.chosen')) node.classList.remove('chosen');
   for (const node of document.querySelectorAll(`[data-link="${l}"]`)) node.classList.add('chosen');
-  const link = network.links[l];
+  const link = network.links[l], free = link.free_directions;
   document.getElementById('link-text').replaceChildren(
-    element('strong', `${names(link)}: ${inWords[link.state]}. `), `${link.reason}. The pair by itself: `,
+    element('strong', `${names(link)}: ${inWords[link.state]}. `),
+    `${link.reason}. ${free.length > 0 ? `Not fixed: ${free.join('; ')}. ` : ''}The pair by itself: `,
     element('code', `igsp align ${quoted(network.scans[link.source].name)} ${quoted(network.scans[link.target].name)} ` +
       `--voxel-size ${network.voxel_size} --html pair.html`));
 }
@@ -119,22 +52,23 @@ function prepareStations() {
   network.scans.forEach((scan, i) => {
     const own = network.links.filter((link) => link.source === i || link.target === i);
     Object.assign(scan, {
-      index: i, place: times(scan.world_from_scan, scan.station),
+      index: i, place: transformed(scan.world_from_scan, scan.station),
       used: own.filter((link) => link.state === 'used').length,
       unconfirmed: own.filter((link) => link.state === 'unconfirmed').length,
     });
   });
 }
 
-function fillLinks() {
+function fillLinks(onLink) {
   const shown = {used: true, unconfirmed: true, rejected: true, not_registered: false};
   const rows = () => network.links.filter((link) => shown[link.state]);
   const redraw = fillTable(document.getElementById('links'), linkColumns, rows, (line, link) => {
     const l = network.links.indexOf(link);
     line.classList.add(link.state);
+    line.classList.toggle('chosen', l === chosenLink);
     line.setAttribute('data-link', l);
-    line.addEventListener('click', () => choose(l));
-  });
+    line.addEventListener('click', () => onLink(l));
+  }, (link) => link.reason);
   for (const state of Object.keys(shown)) {
     const label = element('label', '', {class: 'group'}), box = element('input', '', {type: 'checkbox', id: `show-${state}-rows`});
     box.checked = shown[state];
@@ -144,9 +78,41 @@ function fillLinks() {
   }
   const left = network.counts.not_registered - network.links.filter((link) => link.state === 'not_registered').length;
   document.getElementById('links-note').textContent =
-    'Free space: share of the points that lie where the other scanner saw through. Loops: triangles that close. ' +
+    'Median, RMS: cloud to cloud, distances of the source\'s points from the target\'s surface along its normals, where ' +
+    'the network put them. Sigma: standard deviation of the pair\'s translation along the axes of the target. ' +
+    'Free space: share of the points that lie where the other scanner saw through. Loops: triangles that close; cycle ' +
+    'error: of the one that closes best, in sigmas. ' +
     'Pair – network: RMS displacement of the source\'s points between what the pair says and where the network put it.' +
     (left > 0 ? ` ${count(left)} pairs that are not registered, those of the lowest confidence, are in links.csv only.` : '');
+}
+
+function loopsText({all, closing, shown}) {
+  if (all === 0) return 'No three scans are registered with each other, so nothing checks a link but the free space.';
+  const rest = shown.length < all ? ` Of them the ${count(shown.length)} worst are shown, network.json has all.` : '';
+  const open = all - closing;
+  if (open === 0) return `${all === 1 ? 'The only loop closes' : `All ${count(all)} loops of three links close`}.${rest}`;
+  return `${count(open)} of ${count(all)} loops of three links ${open === 1 ? 'does' : 'do'} not close: ` +
+    `one link of each is wrong.${rest}`;
+}
+
+// Of the pairs of one frame whose viewpoints are both known.
+function contradictionsText({all, shown}) {
+  const known = network.components.some((frame) => frame.filter((i) => network.scans[i].station_known).length > 1);
+  if (!known) return 'Not known: it takes two scans of a frame whose scanners\' places are known.';
+  if (all === 0) return 'None: no scan has more than 1 % of its points in space that another scanner of its frame saw through.';
+  const rest = shown.length < all ? ` The ${count(shown.length)} worst are shown, network.json has all.` : '';
+  return `${count(all)} ${all === 1 ? 'pair' : 'pairs'} of scans, at the final poses, with more than 1 % of the points of one ` +
+    `where the other scanner saw through. People and leaves make a few percent.${rest}`;
+}
+
+function fillLoops() {
+  const fill = (id, {shown}, columns, text, decorate) => {
+    document.getElementById(`${id}-text`).textContent = text;
+    if (shown.length > 0) fillTable(document.getElementById(id), columns, () => shown, decorate);
+  };
+  fill('loops', network.loops, loopColumns, loopsText(network.loops),
+    (line, loop) => line.classList.add(loop.closes ? 'used' : 'rejected'));
+  fill('contradictions', network.contradictions, contradictionColumns, contradictionsText(network.contradictions), () => {});
 }
 
 function keyValueTable(id, entries) {
@@ -171,34 +137,69 @@ function fillRun() {
   document.getElementById('made-by').textContent = `igsp ${network.igsp} network. Lengths in the unit of the scans.`;
 }
 
-function start() {
-  const frame = document.getElementById('frame');
+function fillFrames() {
   network.components.forEach((members, c) => {
     if (members.length > 1 || c === 0) {
-      frame.append(element('option', `${c + 1}: ${members.length} ${members.length === 1 ? 'scan' : 'scans'}`, {value: c}));
+      document.getElementById('frame').append(
+        element('option', `${c + 1}: ${members.length} ${members.length === 1 ? 'scan' : 'scans'}`, {value: c}));
     }
   });
-  const checked = (id) => document.getElementById(id).checked;
-  const redraw = () => {
-    if (network.components.length === 0) return;
-    drawMap(Number(frame.value), {up: document.getElementById('up').value, points: checked('show-points'),
-      names: checked('show-names'), rejected: checked('show-rejected')}, choose);
+}
+
+function fillScale() {
+  document.querySelector('#scale i').style.background = `linear-gradient(to right, ${rampColours.join(',')})`;
+  document.getElementById('scale-far').textContent = `${short(network.farthest_coloured)} units or more`;
+  const measured = network.scans.some((scan) => scan.distances_drawn !== null);
+  document.querySelector('#colour [value=distance]').disabled = !measured;
+}
+
+function mapNote(byDistance) {
+  const drawn = network.scans.reduce((sum, scan) => sum + worldPoints(scan).length / 3, 0);
+  return `Drawn: about ${count(Math.round(drawn))} voxel centroids of all scans. ` + (byDistance
+    ? 'Distance: from the surface of the other scans of the frame, along the normal of the nearest of all their voxels; ' +
+      `grey where none is within ${short(network.neighbour_reach)} units. `
+    : 'Each has the colour of its station. ') +
+    'Drag to turn, wheel to zoom, right button to move; or Tab to the map and use the arrow keys, plus and minus.';
+}
+
+function mapSettings() {
+  const value = (id) => document.getElementById(id).value, checked = (id) => document.getElementById(id).checked;
+  return {frame: Number(value('frame')), up: value('up'), byDistance: value('colour') === 'distance',
+    points: checked('show-points'), names: checked('show-names'), rejected: checked('show-rejected'),
+    pairOnly: checked('pair-only')};
+}
+
+function connectMap(map) {
+  const show = () => {
+    const settings = mapSettings();
+    document.getElementById('scale').hidden = !settings.byDistance;
+    document.getElementById('map-note').textContent = mapNote(settings.byDistance);
+    map.show(settings);
   };
-  for (const id of ['frame', 'up', 'show-points', 'show-names', 'show-rejected']) {
-    document.getElementById(id).addEventListener('change', redraw);
+  for (const id of ['frame', 'up', 'colour', 'show-points', 'show-names', 'show-rejected', 'pair-only']) {
+    document.getElementById(id).addEventListener('change', show);
   }
-  addEventListener('resize', redraw);
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
-  const drawn = network.scans.reduce((sum, scan) => sum + scan.points_drawn.length / 16, 0);
-  document.getElementById('map-note').textContent = `Drawn: about ${count(Math.round(drawn))} voxel centroids of all ` +
-    'scans, each in the colour of its station.';
-  redraw();
+  for (const button of document.querySelectorAll('[data-look]')) {
+    button.addEventListener('click', () => map.lookFrom(button.dataset.look));
+  }
+  new ResizeObserver(() => map.draw()).observe(map.stage);
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', show);
+  show();
 }
 
 const network = JSON.parse(document.getElementById('data').textContent);
 prepareStations();
 fillVerdict();
-fillLinks();
+fillScale();
+fillFrames();
+const map = network.components.length === 0 ? null : new StationMap(document.getElementById('stage'), chooseEverywhere);
+function chooseEverywhere(l) {
+  choose(l);
+  document.getElementById('pair-only').disabled = false;
+  if (map) map.choose(l);
+}
+fillLinks(chooseEverywhere);
+fillLoops();
 fillTable(document.getElementById('stations'), stationColumns, () => network.scans, () => {});
 fillRun();
-start();
+if (map) connectMap(map);

@@ -1,97 +1,5 @@
 'use strict';
-// The map: stations from above with their points behind them, and the links between them.
-
-const times = (rows, p) => rows.slice(0, 3).map((row) => row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3]);
-const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-const unit = (a) => { const n = Math.hypot(...a); return a.map((x) => x / n); };
-const stationColour = (i, lightness) => `hsl(${Math.round(i * 137.508) % 360} 55% ${lightness}%)`;
-
-function worldPoints(scan) {
-  if (scan.world) return scan.world;
-  const bytes = Uint8Array.from(atob(scan.points_drawn), (letter) => letter.charCodeAt(0));
-  const local = new Float32Array(bytes.buffer);
-  scan.world = [];
-  for (let i = 0; i + 2 < local.length; i += 3) {
-    scan.world.push(times(scan.world_from_scan, [0, 1, 2].map((k) => scan.origin[k] + local[i + k])));
-  }
-  return scan.world;
-}
-
-// The direction in which points spread least: shifted power iteration on their scatter.
-function flatDirection(points) {
-  const mean = [0, 1, 2].map((k) => points.reduce((sum, p) => sum + p[k], 0) / points.length);
-  const scatter = [[0, 0, 0], [0, 0, 0], [0, 0, 0]];
-  for (const p of points) {
-    for (let i = 0; i < 3; ++i) {
-      for (let j = 0; j < 3; ++j) scatter[i][j] += (p[i] - mean[i]) * (p[j] - mean[j]);
-    }
-  }
-  const shift = scatter[0][0] + scatter[1][1] + scatter[2][2];
-  if (!(shift > 0)) return [0, 0, 1];
-  let v = unit([0.1, 0.2, 1]);
-  for (let k = 0; k < 200; ++k) v = unit([0, 1, 2].map((i) => shift * v[i] - dot(scatter[i], v)));
-  return v[2] < 0 ? v.map((x) => -x) : v;
-}
-
-// Two axes of the map, as seen from above.
-function mapAxes(choice, points) {
-  const fixed = {z: [0, 0, 1], y: [0, 1, 0], '-y': [0, -1, 0]};
-  let up = fixed[choice];
-  if (!up) {
-    up = flatDirection(points);
-    const near = Object.values(fixed).find((axis) => dot(axis, up) > Math.cos(15 * Math.PI / 180));
-    if (near) up = near;
-  }
-  const first = Math.abs(up[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0];
-  const right = unit(first.map((x, k) => x - up[k] * dot(up, first)));
-  return [right, cross(up, right)];
-}
-
-function linkColour(link) {
-  const style = getComputedStyle(document.documentElement);
-  const share = Math.round(100 * Math.min(1, Math.max(0, (link.confidence - 0.5) * 2)));
-  return `color-mix(in srgb, ${style.getPropertyValue('--used-high')} ${share}%, ${style.getPropertyValue('--used-low')})`;
-}
-
-function drawMap(frame, settings, onLink) {
-  const stage = document.getElementById('stage'), width = stage.clientWidth, height = stage.clientHeight;
-  const members = network.components[frame], inside = new Set(members);
-  const everywhere = members.flatMap((i) => worldPoints(network.scans[i]));
-  const places = members.map((i) => times(network.scans[i].world_from_scan, network.scans[i].station));
-  const [right, up] = mapAxes(settings.up, everywhere.concat(places));
-  const flat = (p) => [dot(right, p), dot(up, p)];
-  const range = [Infinity, -Infinity, Infinity, -Infinity];
-  for (const [x, y] of everywhere.concat(places).map(flat)) {
-    range[0] = Math.min(range[0], x); range[1] = Math.max(range[1], x);
-    range[2] = Math.min(range[2], y); range[3] = Math.max(range[3], y);
-  }
-  const scale = Math.min((width - 60) / (range[1] - range[0] || 1), (height - 60) / (range[3] - range[2] || 1));
-  const place = (p) => {
-    const [x, y] = flat(p);
-    return [width / 2 + scale * (x - (range[0] + range[1]) / 2), height / 2 - scale * (y - (range[2] + range[3]) / 2)];
-  };
-  drawPoints(members, settings.points, place, width, height);
-  drawLinks(members, inside, settings, place, onLink);
-  drawRuler(scale, width);
-}
-
-function drawPoints(members, shown, place, width, height) {
-  const canvas = document.getElementById('points'), ratio = window.devicePixelRatio || 1;
-  canvas.width = width * ratio; canvas.height = height * ratio;
-  const context = canvas.getContext('2d');
-  context.scale(ratio, ratio);
-  if (!shown) return;
-  const dark = matchMedia('(prefers-color-scheme: dark)').matches;
-  context.globalAlpha = 0.55;
-  for (const i of members) {
-    context.fillStyle = stationColour(i, dark ? 62 : 48);
-    for (const p of worldPoints(network.scans[i])) {
-      const [x, y] = place(p);
-      context.fillRect(x - 0.75, y - 0.75, 1.5, 1.5);
-    }
-  }
-}
+// The map: the stations of a frame with their points behind them and the links between them, and how it is turned.
 
 function svgNode(kind, attributes, text) {
   const node = document.createElementNS('http://www.w3.org/2000/svg', kind);
@@ -100,31 +8,166 @@ function svgNode(kind, attributes, text) {
   return node;
 }
 
-function drawLinks(members, inside, settings, place, onLink) {
-  const map = document.getElementById('map');
-  map.replaceChildren();
-  const at = new Map(members.map((i) => [i, place(times(network.scans[i].world_from_scan, network.scans[i].station))]));
-  network.links.forEach((link, l) => {
-    if (!inside.has(link.source) || !inside.has(link.target) || link.state === 'not_registered') return;
-    if (link.state === 'rejected' && !settings.rejected) return;
-    const [[x1, y1], [x2, y2]] = [at.get(link.source), at.get(link.target)];
-    const line = svgNode('line', {x1, y1, x2, y2, class: link.state, 'stroke-width': 3, tabindex: 0, 'data-link': l});
+function linkColour(link) {
+  const share = Math.round(100 * Math.min(1, Math.max(0, (link.confidence - 0.5) * 2)));
+  return `color-mix(in srgb, ${themeColour('--used-high')} ${share}%, ${themeColour('--used-low')})`;
+}
+
+class StationMap {
+  // onLink: called with the index of a link that was clicked.
+  constructor(stage, onLink) {
+    this.stage = stage;
+    this.onLink = onLink;
+    this.chosen = null;
+    this.look = {...looks.above};
+    stage.addEventListener('pointerdown', (event) => this.startDrag(event));
+    stage.addEventListener('pointermove', (event) => this.drag(event));
+    stage.addEventListener('contextmenu', (event) => event.preventDefault());  // the right button moves
+    stage.addEventListener('wheel', (event) => this.zoomByWheel(event), {passive: false});
+    stage.addEventListener('keydown', (event) => this.turnByKey(event));
+  }
+
+  // settings: frame, up, byDistance, points, names, rejected, pairOnly.
+  show(settings) {
+    const changed = !this.settings || this.settings.frame !== settings.frame || this.settings.up !== settings.up;
+    this.settings = settings;
+    if (changed) {
+      this.frame = frameOf(settings.frame, settings.up);
+      this.look = {...looks.above};
+    }
+    this.fillLinks();
+    this.draw();
+  }
+
+  lookFrom(name) {
+    const fit = (look) => fitOf(this.frame, look, this.stage.clientWidth, this.stage.clientHeight);
+    this.look = {...looks[name], zoom: fit(looks[name]) / fit(looks.above)};
+    this.draw();
+  }
+
+  choose(l) {
+    this.chosen = network.links[l];
+    if (this.settings.pairOnly) this.draw();
+  }
+
+  // Soon, and once for all that changed until then.
+  draw() {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.drawNow();
+    });
+  }
+
+  drawNow() {
+    const {clientWidth: width, clientHeight: height} = this.stage, {settings, chosen} = this;
+    const projection = projectionOf(this.frame, this.look, width, height);
+    const pair = settings.pairOnly && chosen ? new Set([chosen.source, chosen.target]) : null;
+    document.getElementById('map').classList.toggle('pair', pair !== null);
+    drawCloud(document.getElementById('points'), this.frame, projection, settings.byDistance,
+      settings.points ? pair : new Set());
+    this.placeLinks(projection.place);
+    drawRuler(projection.scale, width);
+  }
+
+  fillLinks() {
+    const {frame, settings} = this, inside = new Set(frame.members);
+    this.lines = [];
+    network.links.forEach((link, l) => {
+      if (!inside.has(link.source) || !inside.has(link.target) || link.state === 'not_registered') return;
+      if (link.state === 'rejected' && !settings.rejected) return;
+      this.lines.push({link, node: this.lineOf(link, l)});
+    });
+    this.stations = frame.members.map((i) => {
+      const circle = svgNode('circle', {r: 6, 'data-scan': i});
+      circle.style.fill = stationColour(i, 55);  // the page's policy refuses style attributes
+      circle.append(svgNode('title', {}, network.scans[i].name));
+      return {at: frame.station.get(i), circle, name: svgNode('text', {}, shortName(network.scans[i].name))};
+    });
+    document.getElementById('map').replaceChildren(...this.lines.map(({node}) => node),
+      ...this.stations.flatMap(({circle, name}) => settings.names ? [circle, name] : [circle]));
+  }
+
+  lineOf(link, l) {
+    const line = svgNode('line', {class: link.state, 'stroke-width': 3, tabindex: 0, 'data-link': l});
+    line.classList.toggle('chosen', link === this.chosen);
     if (link.state === 'used') line.setAttribute('stroke', linkColour(link));
     line.append(svgNode('title', {}, linkTitle(link)));
-    line.addEventListener('click', () => onLink(l));
-    line.addEventListener('keydown', (event) => { if (event.key === 'Enter') onLink(l); });
-    map.append(line);
-  });
-  for (const i of members) {
-    const [cx, cy] = at.get(i);
-    const circle = svgNode('circle', {cx, cy, r: 6, 'data-scan': i});
-    circle.style.fill = stationColour(i, 55);  // the page's policy refuses style attributes
-    circle.append(svgNode('title', {}, network.scans[i].name));
-    map.append(circle);
-    if (settings.names) map.append(svgNode('text', {x: cx + 9, y: cy + 4}, shortName(network.scans[i].name)));
+    line.addEventListener('click', () => this.onLink(l));
+    line.addEventListener('keydown', (event) => { if (event.key === 'Enter') this.onLink(l); });
+    return line;
+  }
+
+  placeLinks(place) {
+    const move = (node, names, values) => names.forEach((name, k) => node.setAttribute(name, values[k]));
+    for (const {link, node} of this.lines) {
+      const ends = [link.source, link.target].flatMap((i) => place(this.frame.station.get(i)));
+      move(node, ['x1', 'y1', 'x2', 'y2'], ends);
+    }
+    for (const {at, circle, name} of this.stations) {
+      const [x, y] = place(at);
+      move(circle, ['cx', 'cy'], [x, y]);
+      move(name, ['x', 'y'], [x + 9, y + 4]);
+    }
+  }
+
+  startDrag(event) {
+    this.dragged = false;
+    this.from = [event.clientX, event.clientY];
+  }
+
+  drag(event) {
+    if (event.buttons === 0 || !this.from) return;
+    const [dx, dy] = [event.clientX - this.from[0], event.clientY - this.from[1]];
+    if (!this.dragged && Math.hypot(dx, dy) < 4) return;  // a click with an unsteady hand
+    if (!this.dragged) this.stage.setPointerCapture(event.pointerId);  // from now on no link takes it for a click
+    this.dragged = true;
+    this.from = [event.clientX, event.clientY];
+    if (event.buttons & 2) this.move(dx, dy);
+    else this.turn(dx * 0.008, dy * 0.008);
+  }
+
+  move(dx, dy) {
+    this.look.shift = [this.look.shift[0] + dx, this.look.shift[1] + dy];
+    this.draw();
+  }
+
+  turn(about, tilt) {
+    this.look.turn += about;
+    this.look.tilt = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, this.look.tilt + tilt));
+    this.draw();
+  }
+
+  // x, y: from the middle of the stage, what stays where it is.
+  zoom(factor, x = 0, y = 0) {
+    const zoom = Math.min(200, Math.max(0.2, this.look.zoom * factor)), grown = zoom / this.look.zoom;
+    this.look.zoom = zoom;
+    this.look.shift = [x + grown * (this.look.shift[0] - x), y + grown * (this.look.shift[1] - y)];
+    this.draw();
+  }
+
+  zoomByWheel(event) {
+    event.preventDefault();
+    const box = this.stage.getBoundingClientRect();
+    this.zoom(event.deltaY < 0 ? 1.15 : 1 / 1.15, event.clientX - box.left - box.width / 2,
+      event.clientY - box.top - box.height / 2);
+  }
+
+  turnByKey(event) {
+    const angle = Math.PI / 24;
+    const actions = {
+      ArrowLeft: () => this.turn(angle, 0), ArrowRight: () => this.turn(-angle, 0),
+      ArrowUp: () => this.turn(0, angle), ArrowDown: () => this.turn(0, -angle),
+      '+': () => this.zoom(1.15), '=': () => this.zoom(1.15), '-': () => this.zoom(1 / 1.15),
+    };
+    if (!actions[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    actions[event.key]();
   }
 }
 
+// Lengths across the line of sight.
 function drawRuler(scale, width) {
   const longest = width / 4 / scale, power = 10 ** Math.floor(Math.log10(longest));
   const length = [5, 2, 1].map((k) => k * power).find((size) => size <= longest);

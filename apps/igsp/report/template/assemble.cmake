@@ -15,5 +15,5 @@ foreach(part THREE_LICENCE CHART_LICENCE)
 endforeach()
 
 file(READ ${here}/style.css style)
-insert_our_own(${here} "${style}" words plots view main)
+insert_our_own("${style}" ${here}/words.js ${here}/plots.js ${here}/shared.js ${here}/view.js ${here}/main.js)
 write_page(${OUTPUT} report/page.hpp report_page)

@@ -43,13 +43,13 @@ macro(insert_library place path)
   string(APPEND script_digests " ${one}")
 endmacro()
 
-# The style, and our scripts `folder`/NAME.js in order; then the policy, which must come last.
-macro(insert_our_own folder style)
+# The style, and our scripts, paths in order; then the policy, which must come last.
+macro(insert_our_own style)
   insert(STYLE "<style>${style}</style>")
   digest(style_digest "${style}")
   set(scripts "")
-  foreach(name ${ARGN})
-    file(READ ${folder}/${name}.js script)
+  foreach(path ${ARGN})
+    file(READ ${path} script)
     string(APPEND scripts "<script>${script}</script>\n")
     digest(one "${script}")
     string(APPEND script_digests " ${one}")

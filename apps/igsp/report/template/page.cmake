@@ -24,6 +24,6 @@ add_custom_command(OUTPUT ${report_page_source}
     -DORBIT_CONTROLS=${IGSP_ORBIT_CONTROLS_JS} -DTHREE_LICENCE=${IGSP_THREE_LICENCE}
     -DCHART=${IGSP_CHART_JS} -DCHART_LICENCE=${IGSP_CHART_LICENCE} -P ${page_template}/assemble.cmake
   DEPENDS ${page_template}/assemble.cmake ${page_template}/assembly.cmake ${page_template}/page.html ${page_template}/style.css
-    ${page_template}/view.js ${page_template}/plots.js ${page_template}/words.js ${page_template}/main.js
+    ${page_template}/shared.js ${page_template}/view.js ${page_template}/plots.js ${page_template}/words.js ${page_template}/main.js
     ${IGSP_THREE_JS} ${IGSP_ORBIT_CONTROLS_JS} ${IGSP_CHART_JS} ${IGSP_THREE_LICENCE} ${IGSP_CHART_LICENCE}
   COMMENT "Assembling the report page" VERBATIM)

@@ -30,21 +30,6 @@ const fragmentShader = `
   void main() { gl_FragColor = vec4(shade, 1.0); }`;
 
 const looks = {oblique: [-0.6, -1, 0.75], top: [0, -0.0001, 1], front: [0, -1, 0.02], side: [1, 0, 0.02]};
-const upAxes = {z: [0, 0, 1], y: [0, 1, 0], '-y': [0, -1, 0]};
-const rampColours = ['#2b6cb0', '#2a9d8f', '#e9a23b', '#c8372d'];  // near to far
-
-function bytesOf(text) {
-  const letters = atob(text);
-  const bytes = new Uint8Array(letters.length);
-  for (let i = 0; i < letters.length; ++i) bytes[i] = letters.charCodeAt(i);
-  return bytes;
-}
-
-function transformed(rows, p) {
-  return rows.slice(0, 3).map((row) => row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3]);
-}
-
-const minus = (p, origin) => p.map((value, i) => value - origin[i]);
 
 class View {
   constructor(canvas) {
