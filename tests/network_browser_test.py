@@ -29,14 +29,15 @@ canvas.width = picture.width; canvas.height = picture.height;
 const context = canvas.getContext('2d', {willReadFrequently: true});
 context.drawImage(picture, 0, 0);
 const pixels = context.getImageData(0, 0, canvas.width, canvas.height).data;
-let drawn = 0, sum = 0, colours = 0;
+let drawn = 0, sum = 0, colours = 0, blue = 0;
 for (let i = 3; i < pixels.length; i += 4) {
   if (pixels[i] === 0) continue;
   ++drawn;
   sum = (sum * 31 + i) % 9007199254;
+  if (pixels[i - 1] > pixels[i - 3]) ++blue;
   colours = (colours * 31 + pixels[i - 3] + 256 * pixels[i - 2]) % 9007199254;
 }
-return {share: 4 * drawn / pixels.length, sum, colours};
+return {share: 4 * drawn / pixels.length, sum, colours, blue: blue / drawn};
 """
 
 
@@ -72,8 +73,9 @@ def world_points(scan):
     """What is drawn of a scan of the page's data."""
     numbers = base64.b64decode(scan["points_drawn"])
     local = struct.iter_unpack("<3f", numbers)
-    moved = ([a + b for a, b in zip(scan["origin"], p)] for p in local)
-    return [tuple(row[3] + sum(a * b for a, b in zip(row, p)) for row in scan["world_from_scan"][:3]) for p in moved]
+    moved = ([a + b for a, b in zip(scan["origin"], p, strict=True)] for p in local)
+    rows = scan["world_from_scan"][:3]
+    return [[row[3] + sum(a * b for a, b in zip(row[:3], p, strict=True)) for row in rows] for p in moved]
 
 
 class Page(unittest.TestCase):
@@ -184,13 +186,15 @@ class Survey(Page):
         self.script("arguments[0].scrollIntoView({block: 'center'})", self.find("stage"))
         return self.find("stage")
 
-    def drag(self, dx, dy, start=(-250, -60)):
-        ActionChains(self.browser, 50).move_to_element_with_offset(self.stage(), *start).click_and_hold().move_by_offset(
-            dx / 2, dy / 2).move_by_offset(dx / 2, dy / 2).release().perform()
+    def drag(self, *moves, start=(-250, -60)):
+        actions = ActionChains(self.browser, 50).move_to_element_with_offset(self.stage(), *start).click_and_hold()
+        for move in moves:
+            actions.move_by_offset(*move)
+        actions.release().perform()
 
     def test_dragging_turns_the_map_and_a_button_turns_it_back(self):
         above, places = self.drawn(), self.stations_drawn()
-        self.drag(80, -60)
+        self.drag((40, -30), (40, -30))
         self.assertNotEqual(self.drawn()["sum"], above["sum"])
         self.assertNotEqual(self.stations_drawn(), places)
         self.all("[data-look=above]")[0].click()
@@ -230,7 +234,7 @@ class Survey(Page):
             });
             const [, x, y] = middles.find(([line, x, y]) => document.elementFromPoint(x, y) === line);
             return [x - stage.x - stage.width / 2, y - stage.y - stage.height / 2];""", self.stage())
-        self.drag(30, -30, middle)
+        self.drag((30, -30), (-30, 30), start=middle)  # there and back, onto the link
         self.assertEqual(self.all(".chosen"), [])
         self.all("[data-look=above]")[0].click()
         self.drawn()
@@ -244,6 +248,7 @@ class Survey(Page):
         by_distance = self.drawn()
         self.assertEqual(by_distance["sum"], by_station["sum"])
         self.assertNotEqual(by_distance["colours"], by_station["colours"])
+        self.assertGreater(by_distance["blue"], 0.6)  # of near points; the others are leaves
         farthest = self.data()["farthest_coloured"]
         self.assertIn(f"{farthest:.3g} units or more", self.find("scale").text)
         self.assertIn("along the normal", self.find("map-note").text)
@@ -251,15 +256,15 @@ class Survey(Page):
         self.assertEqual(self.drawn(), by_station)
 
     def test_distances_are_those_to_the_other_scans(self):
-        """All voxels of so small scans are drawn: a point has a distance where one of another scan of its frame is within
-        reach, and along a normal that is no longer than to the point, mostly far shorter."""
+        """All voxels of so small scans are drawn: a point has a distance where one of another scan of its frame is
+        within reach, and along a normal that is no longer than to the point, mostly far shorter."""
         data, shares = self.data(), []
         clouds = [(scan["component"], world_points(scan), base64.b64decode(scan["distances_drawn"] or ""))
                   for scan in data["scans"]]
         for frame, points, distances in clouds:
             self.assertEqual(len(points), len(distances))
-            others = [q for other_frame, other, _ in clouds if other_frame == frame and other is not points for q in other]
-            for p, step in list(zip(points, distances))[::40]:
+            others = [q for other in clouds if other[0] == frame and other[1] is not points for q in other[1]]
+            for p, step in list(zip(points, distances, strict=True))[::40]:
                 nearest = min((math.dist(p, q) for q in others), default=math.inf)
                 if abs(nearest / data["neighbour_reach"] - 1) < 1e-3:
                     continue
@@ -311,7 +316,7 @@ class Survey(Page):
             numbers = [float(text.rstrip(" %").replace("–", "0")) for text in self.sort_by("links", title)]
             self.assertGreater(len(set(numbers)), 1, title)
             self.assertEqual(numbers, sorted(numbers, reverse=True), title)
-        weakest = [max(map(float, text.split(", "))) for text in self.sort_by("links", "Sigma x, y, z")]
+        weakest = [max(map(float, text.split(", "))) for text in self.sort_by("links", "Sigma x, y, z [1/1000]")]
         self.assertEqual(weakest, sorted(weakest, reverse=True))
         self.assertGreater(weakest[-1], 0)
 
@@ -334,7 +339,8 @@ class Survey(Page):
         opened = sum(not cycle["closes"] for cycle in network["cycles"])
         self.assertIn("not close" if opened else "close", self.find("loops-text").text)
         self.assertEqual(len(self.rows("contradictions")), len(network["contradictions"]))
-        self.assertRegex(self.find("contradictions-text").text, "^None: " if not network["contradictions"] else r"^\d+ pair")
+        said = "^None: " if not network["contradictions"] else r"^\d+ pair"
+        self.assertRegex(self.find("contradictions-text").text, said)
 
     def test_nothing_is_wider_than_a_small_laptop_or_a_phone(self):
         self.addCleanup(self.browser.set_window_size, 1280, 900)

@@ -1,6 +1,6 @@
 'use strict';
-// The points of a frame in a canvas: what is nearest to the eye gives a pixel its colour, how many points fall on it its
-// opacity, so that walls show through ceilings.
+// The points of a frame in a canvas: what is nearest to the eye gives a pixel its colour, how many points fall on it
+// its opacity, so that walls show through ceilings.
 
 const stationColour = (i, lightness) => `hsl(${Math.round(i * 137.508) % 360} 55% ${lightness}%)`;
 const isDark = () => matchMedia('(prefers-color-scheme: dark)').matches;

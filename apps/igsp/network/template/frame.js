@@ -60,7 +60,8 @@ function mapAxes(choice, points) {
 
 // Coordinates along the axes, about the middle of their range, and half of that.
 function alongAxes(axes, points) {
-  const along = new Float64Array(points.length), low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  const along = new Float64Array(points.length);
+  const low = new Array(3).fill(Infinity), high = new Array(3).fill(-Infinity);
   for (let p = 0; p < points.length; p += 3) {
     for (let k = 0; k < 3; ++k) {
       const x = axes[k][0] * points[p] + axes[k][1] * points[p + 1] + axes[k][2] * points[p + 2];
@@ -102,8 +103,9 @@ function axesOf({turn, tilt}) {
 
 // Pixels a unit, so that the box of the frame is in the picture.
 function fitOf(frame, look, width, height) {
-  const [across, along] = axesOf(look).map((axis) => 2 * axis.reduce((sum, x, k) => sum + Math.abs(x) * frame.half[k], 0));
-  return Math.min((width - 60) / (across || 1), (height - 60) / (along || 1));
+  const reach = (axis) => axis.reduce((sum, x, k) => sum + Math.abs(x) * frame.half[k], 0);
+  const [right, up] = axesOf(look);
+  return Math.min((width - 60) / (2 * reach(right) || 1), (height - 60) / (2 * reach(up) || 1));
 }
 
 // The scale is that of the view from above, so that turning does not change sizes.

@@ -70,7 +70,8 @@ function fillLinks(onLink) {
     line.addEventListener('click', () => onLink(l));
   }, (link) => link.reason);
   for (const state of Object.keys(shown)) {
-    const label = element('label', '', {class: 'group'}), box = element('input', '', {type: 'checkbox', id: `show-${state}-rows`});
+    const label = element('label', '', {class: 'group'});
+    const box = element('input', '', {type: 'checkbox', id: `show-${state}-rows`});
     box.checked = shown[state];
     box.addEventListener('change', () => { shown[state] = box.checked; redraw(); });
     label.append(box, ` ${inWords[state]} (${network.counts[state]})`);
@@ -78,19 +79,22 @@ function fillLinks(onLink) {
   }
   const left = network.counts.not_registered - network.links.filter((link) => link.state === 'not_registered').length;
   document.getElementById('links-note').textContent =
-    'Median, RMS: cloud to cloud, distances of the source\'s points from the target\'s surface along its normals, where ' +
-    'the network put them. Sigma: standard deviation of the pair\'s translation along the axes of the target. ' +
-    'Free space: share of the points that lie where the other scanner saw through. Loops: triangles that close; cycle ' +
-    'error: of the one that closes best, in sigmas. ' +
-    'Pair – network: RMS displacement of the source\'s points between what the pair says and where the network put it.' +
-    (left > 0 ? ` ${count(left)} pairs that are not registered, those of the lowest confidence, are in links.csv only.` : '');
+    'Median, RMS: cloud to cloud, distances of the source\'s points from the target\'s surface along its normals, ' +
+    'where the network put them. Sigma: standard deviation of the pair\'s translation along the axes of the target, ' +
+    'in thousandths of the unit; free: the surfaces do not fix it. ' +
+    'Free space: share of the points that lie where the other scanner saw through. Loops: triangles that close; ' +
+    'cycle error: of the one that closes best, in sigmas. ' +
+    'Pair – network: RMS displacement of the source\'s points between what the pair says and where the network ' +
+    'put it.' + (left > 0
+      ? ` ${count(left)} pairs that are not registered, those of the lowest confidence, are in links.csv only.` : '');
 }
 
 function loopsText({all, closing, shown}) {
-  if (all === 0) return 'No three scans are registered with each other, so nothing checks a link but the free space.';
-  const rest = shown.length < all ? ` Of them the ${count(shown.length)} worst are shown, network.json has all.` : '';
+  if (all === 0) return 'No three scans are registered with each other.';
+  const rest = shown.length < all ? ` The table has the ${count(shown.length)} worst, network.json all.` : '';
   const open = all - closing;
-  if (open === 0) return `${all === 1 ? 'The only loop closes' : `All ${count(all)} loops of three links close`}.${rest}`;
+  if (all === 1 && open === 0) return 'The only loop closes.';
+  if (open === 0) return `All ${count(all)} loops of three links close.${rest}`;
   return `${count(open)} of ${count(all)} loops of three links ${open === 1 ? 'does' : 'do'} not close: ` +
     `one link of each is wrong.${rest}`;
 }
@@ -99,10 +103,12 @@ function loopsText({all, closing, shown}) {
 function contradictionsText({all, shown}) {
   const known = network.components.some((frame) => frame.filter((i) => network.scans[i].station_known).length > 1);
   if (!known) return 'Not known: it takes two scans of a frame whose scanners\' places are known.';
-  if (all === 0) return 'None: no scan has more than 1 % of its points in space that another scanner of its frame saw through.';
-  const rest = shown.length < all ? ` The ${count(shown.length)} worst are shown, network.json has all.` : '';
-  return `${count(all)} ${all === 1 ? 'pair' : 'pairs'} of scans, at the final poses, with more than 1 % of the points of one ` +
-    `where the other scanner saw through. People and leaves make a few percent.${rest}`;
+  if (all === 0) {
+    return 'None: of no two scans with known places more than 1 % of one lies where the other scanner saw through.';
+  }
+  const rest = shown.length < all ? ` The table has the ${count(shown.length)} worst, network.json all.` : '';
+  return `${count(all)} ${all === 1 ? 'pair' : 'pairs'} of scans, at the final poses, with more than 1 % of the ` +
+    `points of one where the other scanner saw through. People and leaves make a few percent.${rest}`;
 }
 
 function fillLoops() {
@@ -112,7 +118,8 @@ function fillLoops() {
   };
   fill('loops', network.loops, loopColumns, loopsText(network.loops),
     (line, loop) => line.classList.add(loop.closes ? 'used' : 'rejected'));
-  fill('contradictions', network.contradictions, contradictionColumns, contradictionsText(network.contradictions), () => {});
+  fill('contradictions', network.contradictions, contradictionColumns, contradictionsText(network.contradictions),
+    () => {});
 }
 
 function keyValueTable(id, entries) {
@@ -156,8 +163,8 @@ function fillScale() {
 function mapNote(byDistance) {
   const drawn = network.scans.reduce((sum, scan) => sum + worldPoints(scan).length / 3, 0);
   return `Drawn: about ${count(Math.round(drawn))} voxel centroids of all scans. ` + (byDistance
-    ? 'Distance: from the surface of the other scans of the frame, along the normal of the nearest of all their voxels; ' +
-      `grey where none is within ${short(network.neighbour_reach)} units. `
+    ? 'Distance: from the surface of the other scans of the frame, along the normal of the nearest of all their ' +
+      `voxels; grey where none is within ${short(network.neighbour_reach)} units. `
     : 'Each has the colour of its station. ') +
     'Drag to turn, wheel to zoom, right button to move; or Tab to the map and use the arrow keys, plus and minus.';
 }
@@ -169,7 +176,10 @@ function mapSettings() {
     pairOnly: checked('pair-only')};
 }
 
+const mostNames = 60;  // of more stations they would hide the map
+
 function connectMap(map) {
+  document.getElementById('show-names').checked = network.scans.length <= mostNames;
   const show = () => {
     const settings = mapSettings();
     document.getElementById('scale').hidden = !settings.byDistance;

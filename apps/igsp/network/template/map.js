@@ -86,7 +86,7 @@ class StationMap {
       return {at: frame.station.get(i), circle, name: svgNode('text', {}, shortName(network.scans[i].name))};
     });
     document.getElementById('map').replaceChildren(...this.lines.map(({node}) => node),
-      ...this.stations.flatMap(({circle, name}) => settings.names ? [circle, name] : [circle]));
+      ...(settings.names ? this.stations.map(({name}) => name) : []), ...this.stations.map(({circle}) => circle));
   }
 
   lineOf(link, l) {

@@ -8,7 +8,8 @@ function fillTable(table, columns, rows, decorate, below) {
   const draw = () => {
     const head = element('tr');
     columns.forEach((column, c) => {
-      const cell = element('th', '', {class: column.kind ?? ''}), button = element('button', column.title, {type: 'button'});
+      const cell = element('th', '', {class: column.kind ?? ''});
+      const button = element('button', column.title, {type: 'button'});
       if (column.hint) button.title = column.hint;
       button.addEventListener('click', () => {
         ascending = sortedBy === c ? !ascending : column.kind !== 'number';
@@ -45,10 +46,11 @@ function fillTable(table, columns, rows, decorate, below) {
   return draw;
 }
 
-// What of a link's translation along the target's axes is known; the worst axis is what it is sorted by.
+// What of a link's translation along the target's axes is known, in thousandths so that three numbers find room; the
+// worst axis is what it is sorted by.
 function strengthText(link) {
   const sigma = link.translation_sigma;
-  return sigma === null ? '–' : sigma.map((s) => s === null ? 'free' : short(s, 2)).join(', ');
+  return sigma === null ? '–' : sigma.map((s) => s === null ? 'free' : short(1000 * s, 2)).join(', ');
 }
 
 function weakestAxis(link) {
@@ -62,7 +64,7 @@ function originText(link) {
   return link.origin === 'runner_up' ? 'second best pose' : '';
 }
 
-const lengthText = (x) => x > 0 ? short(x) : '–';
+const lengthText = (x) => x > 0 ? short(x, 2) : '–';
 const linkColumns = [
   {title: 'Source', value: (l) => shortName(network.scans[l.source].name)},
   {title: 'Target', value: (l) => shortName(network.scans[l.target].name)},
@@ -74,21 +76,28 @@ const linkColumns = [
     hint: 'Cloud to cloud, along the normals, where the network put the scans'},
   {title: 'RMS', value: (l) => l.rms_distance, text: (l) => lengthText(l.rms_distance), kind: 'number',
     hint: 'Cloud to cloud, along the normals, where the network put the scans'},
-  {title: 'Pair RMSE', value: (l) => l.rmse, text: (l) => short(l.rmse), kind: 'number',
+  {title: 'Pair RMSE', value: (l) => l.rmse, text: (l) => lengthText(l.rmse), kind: 'number',
     hint: 'Of the inliers, at the pose of the pair by itself'},
-  {title: 'Sigma x, y, z', value: weakestAxis, text: strengthText, kind: 'number',
-    hint: 'Standard deviation of the translation along the axes of the target; sorted by the weakest',
-    decorate: (cell, l) => { if (l.free_directions.length > 0) cell.title = `Not fixed: ${l.free_directions.join('; ')}`; }},
+  {title: 'Sigma x, y, z [1/1000]', value: weakestAxis, text: strengthText, kind: 'number',
+    hint: 'Standard deviation of the translation along the axes of the target, in thousandths of the unit; ' +
+      'sorted by the weakest',
+    decorate: (cell, l) => { cell.title = l.free_directions.join('; '); }},
   {title: 'Matches', value: (l) => l.agreeing_matches, text: (l) => `${l.agreeing_matches} of ${l.mutual_matches}`,
     kind: 'number'},
   {title: 'Free space', value: (l) => l.violation, text: (l) => percent(l.violation), kind: 'number'},
   {title: 'Loops', value: (l) => l.consistent_triangles, kind: 'number'},
-  {title: 'Cycle error', value: (l) => l.cycle_error, text: (l) => l.consistent_triangles > 0 ? short(l.cycle_error, 2) : '–',
-    kind: 'number', hint: 'Of its loops the one that closes best, in sigmas'},
+  {title: 'Cycle error', value: (l) => l.cycle_error,
+    text: (l) => l.consistent_triangles > 0 ? short(l.cycle_error, 2) : '–', kind: 'number',
+    hint: 'Of its loops the one that closes best, in sigmas'},
   {title: 'Pair – network', value: (l) => l.residual, text: (l) => lengthText(l.residual), kind: 'number'},
 ];
 
 const sigma = (scan, from) => Math.sqrt(scan.sigma.slice(from, from + 3).reduce((sum, s) => sum + s * s, 0));
+// To some thousandths of a voxel.
+const placeText = (scan) => {
+  const digits = 3 - Math.floor(Math.log10(network.voxel_size));
+  return scan.place.map((x) => x.toFixed(Math.min(20, Math.max(0, digits)))).join(', ');
+};
 const stationColumns = [
   {title: 'Station', value: (s) => shortName(s.name), kind: 'name',
     decorate: (cell, s) => {
@@ -97,7 +106,7 @@ const stationColumns = [
       cell.prepend(swatch);
     }},
   {title: 'Frame', value: (s) => s.component + 1, kind: 'number'},
-  {title: 'Position', value: (s) => s.place[0], text: (s) => s.place.map((x) => short(x, 6)).join(', '), kind: 'number',
+  {title: 'Position', value: (s) => s.place[0], text: placeText, kind: 'number',
     decorate: (cell, s) => { if (!s.station_known) cell.style.fontStyle = 'italic'; }},
   {title: 'Sigma, position', value: (s) => sigma(s, 3), text: (s) => short(sigma(s, 3), 2), kind: 'number'},
   {title: 'Sigma, turn [deg]', value: (s) => sigma(s, 0), text: (s) => short(sigma(s, 0) * degrees, 2), kind: 'number'},
