@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "registration/precision.hpp"
+#include "registration/verdict.hpp"
 
 namespace igsp {
 namespace {
@@ -55,6 +56,7 @@ bool is_clear(const NetworkLink& link) {
 }
 
 bool may_stand_alone(const NetworkLink& link, const NetworkOptions& options) {
+  if (link.state == LinkState::not_registered) return may_be_right(link, options);
   return (is_clear(link) || link.confidence >= options.min_unconfirmed_confidence) &&
          link.agreeing_matches >= options.min_unconfirmed_matches && link.violation <= lonely_violation;
 }
@@ -98,7 +100,8 @@ ScanShape shape_of(const Features& features) {
 }
 
 bool may_be_right(const NetworkLink& link, const NetworkOptions& options) {
-  return is_clear(link) && link.agreeing_matches >= options.min_unconfirmed_matches;
+  return is_clear(link) && link.agreeing_matches >= options.min_unconfirmed_matches &&
+         link.precision.free_directions.empty() && link.confidence > confidence_of_what_cannot_be;
 }
 
 Witness witness_of(const SeenTogether& seen) {

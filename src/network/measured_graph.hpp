@@ -30,7 +30,8 @@ MeasuredGraph measured_graph(std::span<const NetworkLink> links, std::span<const
 MeasuredGraph without_unused_refused(const MeasuredGraph& measured, std::span<const NetworkLink> links,
                                      const NetworkOptions& options, Forest& forest);
 
-/// True of a pair, though refused by itself, that shares many matches and that the free space does not speak against.
+/// True of a pair, though refused by itself, that shares many matches, that the surfaces fix and that the free space
+/// does not speak against; unless it was refused for something that cannot be.
 bool may_be_right(const NetworkLink& link, const NetworkOptions& options);
 
 /// What two scans say that would be seen so: in favour where their surfaces meet and nothing of one is in the other's

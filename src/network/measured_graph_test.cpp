@@ -23,5 +23,19 @@ TEST(MeasuredGraph, ScansThatAreHiddenFromEachOtherBearNoWitness) {
   EXPECT_EQ(witness_of(seen(0, 29)), Witness::none);
 }
 
+// Two bare rooms of one size lie on each other in four ways, and a corridor anywhere along another one.
+TEST(MeasuredGraph, ARefusedPairMayBeRightOnlyWhereTheSurfacesFixIt) {
+  NetworkLink link;
+  link.confidence = 0.3;
+  link.agreeing_matches = 40;
+  link.in_view = 1000;
+  EXPECT_TRUE(may_be_right(link, {}));
+  link.confidence = 0.1;
+  EXPECT_FALSE(may_be_right(link, {})) << "it was refused for what cannot be";
+  link.confidence = 0.3;
+  link.precision.free_directions.emplace_back();
+  EXPECT_FALSE(may_be_right(link, {}));
+}
+
 }  // namespace
 }  // namespace igsp

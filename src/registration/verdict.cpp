@@ -12,9 +12,6 @@
 namespace igsp {
 namespace {
 
-// Of a pose that may look right, where something else says that it is not known or not possible.
-constexpr double confidence_of_what_cannot_be = 0.1;
-
 // Of two poses less apart than this the better one is right no more often than the other: of 10 answers for tables and
 // benches, with half a turn of theirs behind by 0.1 to 0.55 decades, that were registered for it, 5 were right.
 constexpr double deciding_lead = 0.6;  // decades

@@ -5,6 +5,9 @@
 
 namespace igsp {
 
+/// Of a pose that may look right, where something else says that it is not known or not possible; at most.
+inline constexpr double confidence_of_what_cannot_be = 0.1;
+
 /// What speaks against a pose besides the numbers of the result.
 struct Doubts {
   bool is_ambiguous = false;         ///< more by other poses than by chance
