@@ -5,8 +5,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "network/measured_graph.hpp"
-
 namespace igsp {
 namespace {
 
@@ -60,13 +58,16 @@ double against(const NetworkContradiction& pair) {
 
 }  // namespace
 
-std::vector<NetworkContradiction> contradictions_at(const Network& network, SeenSpace& space) {
+std::vector<NetworkContradiction> contradictions_at(const Network& network, std::span<const ScanShape> shapes,
+                                                    SeenSpace& space) {
   std::vector<NetworkContradiction> found;
   for (const std::vector<std::size_t>& component : network.components) {
     for (const std::size_t a : component) {
       for (const std::size_t b : component) {
         if (a >= b) continue;
         const Transformation a_from_b = network.scans[a].world_from_scan.inverse() * network.scans[b].world_from_scan;
+        const double apart = (a_from_b * shapes[b].centre - shapes[a].centre).norm();
+        if (apart > shapes[a].reach + shapes[b].reach) continue;
         const std::optional<SeenTogether> seen = space.at(b, a, a_from_b);
         const double violation = seen ? seen->free_space.violation() : 0;
         if (violation > doubtful_violation) found.push_back({{a, b}, violation});

@@ -61,7 +61,11 @@ TEST(Contradictions, AreFoundWhereTheNetworkPutsTheScans) {
   Options options;
   options.scale.voxel_size = 0.1;
   std::vector<Features> features;
-  for (const SimulatedScan& scan : site) features.push_back(extract_features(scan, options));
+  std::vector<ScanShape> shapes;
+  for (const SimulatedScan& scan : site) {
+    features.push_back(extract_features(scan, options));
+    shapes.push_back(shape_of(features.back()));
+  }
   Network network;
   network.scans.resize(2);
   network.components = {{0, 1}};
@@ -70,7 +74,7 @@ TEST(Contradictions, AreFoundWhereTheNetworkPutsTheScans) {
     FeatureShelf shelf(
         2, [&](std::size_t i) { return features[i]; }, 0);
     SeenSpace space(shelf);
-    return contradictions_at(network, space);
+    return contradictions_at(network, shapes, space);
   };
   EXPECT_TRUE(found().empty());
   network.scans[1].world_from_scan.rotate(Eigen::AngleAxisd(std::numbers::pi / 4, Eigen::Vector3d::UnitZ()));

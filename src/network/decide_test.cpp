@@ -78,7 +78,7 @@ TEST(Decide, RefusedPairJoinsOnlyWhereNothingSpeaksAgainstIt) {
   NetworkLink& refused = chain.network.links[0];
   refused.state = LinkState::not_registered;
   refused.reason = "too little to tell it from chance";
-  refused.confidence = 0.1;
+  refused.confidence = 0.2;
   EXPECT_EQ(Chain(chain).decided().links[0].reason, "too little to tell it from chance");
   EXPECT_EQ(Chain(chain).decided().components.size(), 2u);
   refused.in_view = 400;

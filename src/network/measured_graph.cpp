@@ -56,6 +56,7 @@ bool is_clear(const NetworkLink& link) {
 }
 
 bool may_stand_alone(const NetworkLink& link, const NetworkOptions& options) {
+  if (link.origin == LinkOrigin::runner_up) return false;
   if (link.state == LinkState::not_registered) return may_be_right(link, options);
   return (is_clear(link) || link.confidence >= options.min_unconfirmed_confidence) &&
          link.agreeing_matches >= options.min_unconfirmed_matches && link.violation <= lonely_violation;
@@ -94,6 +95,10 @@ GraphLink graph_link(const NetworkLink& link, const ScanShape& source, double vo
 ScanShape shape_of(const Features& features) {
   ScanShape shape;
   for (const Eigen::Vector3d& point : features.points) shape.centre += point / features.points.size();
+  for (const Eigen::Vector3d& point : features.points) {
+    shape.reach = std::max(shape.reach, (point - shape.centre).norm());
+  }
+  if (features.viewpoint) shape.reach = std::max(shape.reach, (*features.viewpoint - shape.centre).norm());
   shape.centre += features.origin;
   shape.size = size_of(features.points);
   return shape;

@@ -13,6 +13,7 @@ namespace igsp {
 struct ScanShape {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< centroid, in the scan's frame
   double size = 0;                                   ///< root mean square distance from it
+  double reach = 0;  ///< distance of what is farthest from it, of the points and of where the scanner stood
 };
 ScanShape shape_of(const Features& features);
 

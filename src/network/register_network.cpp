@@ -81,10 +81,12 @@ std::vector<NetworkLink> registered_pairs(const Network& network, FeatureShelf& 
   return links;
 }
 
-// At second best poses, then at scans alone against merged neighbours. Where pairs are listed nothing else is tried.
-Network look_again(const Network& start, Network network, std::vector<NetworkLink>& links, FeatureShelf& shelf,
-                   std::span<const ScanShape> shapes, SeenSpace& space, const NetworkOptions& options,
-                   const ProgressCallback& progress) {
+// From the pairs' answers, then a second look: at second best poses, and at scans alone against merged neighbours.
+// Where pairs are listed no others are tried.
+Network decided(const Network& start, std::vector<NetworkLink>& links, FeatureShelf& shelf,
+                std::span<const ScanShape> shapes, const NetworkOptions& options, const ProgressCallback& progress) {
+  SeenSpace space(shelf);
+  Network network = settled(start, links, shapes, space, options);
   const auto take = [&](const std::vector<NetworkLink>& more) {
     if (more.empty()) return false;
     links.insert(links.end(), more.begin(), more.end());
@@ -139,15 +141,14 @@ Network register_network(std::size_t scans, const FeatureSource& features, const
   start.scans = std::move(gathered.scans);
   start.voxel_size = voxel_size;
   std::vector<NetworkLink> links = registered_pairs(start, shelf, shapes, options, store, progress);
-  SeenSpace space(shelf);
-  Network network = settled(start, links, shapes, space, options);
-  network = look_again(start, std::move(network), links, shelf, shapes, space, options, progress);
+  Network network = decided(start, links, shelf, shapes, options, progress);
   report_progress(progress, "network", 0);
   const std::vector<bool> placed = move_to_control(network, stations, options);
   if (options.pair.refinement.enabled) refine_jointly(network, shelf, stations, options, placed);
   measure_control(network, stations, options, placed);
   measure_residuals(network, shapes);
-  network.contradictions = contradictions_at(network, space);
+  SeenSpace space(shelf);
+  network.contradictions = contradictions_at(network, shapes, space);
   report_progress(progress, "network", 1);
   return network;
 }

@@ -11,7 +11,8 @@ Network settled(const Network& start, std::vector<NetworkLink>& links, std::span
     Network network = start;
     network.links = links;
     decide(network, shapes, &space, options);
-    const std::vector<std::size_t> contradicted = contradicted_links(network, contradictions_at(network, space));
+    const std::vector<std::size_t> contradicted =
+        contradicted_links(network, contradictions_at(network, shapes, space));
     if (contradicted.empty()) return network;
     for (const std::size_t l : contradicted) {
       links[l].state = LinkState::rejected;

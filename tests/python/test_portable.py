@@ -45,7 +45,9 @@ def bound_things(pair, features, result, truth):
     network = igsp.network(site, target_points=3000)
     yield igsp.align_similarity(*pair)
     yield from [network, network.scans[1], network.links[0], network.cycles[0]]
-    yield igsp.network(with_a_lorry(site), viewpoints=[scan.viewpoint for scan in site], target_points=3000).contradictions[0]
+    yield igsp.network(
+        with_a_lorry(site), viewpoints=[scan.viewpoint for scan in site], target_points=3000
+    ).contradictions[0]
 
 
 def with_a_lorry(site):
