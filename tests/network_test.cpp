@@ -103,6 +103,9 @@ TEST(Network, TwoScansAreOneUnconfirmedLink) {
   EXPECT_EQ(network.links[0].state, LinkState::unconfirmed);
   EXPECT_EQ(network.components.size(), 1u);
   EXPECT_LT(network.links[0].residual, 1e-3);  // nothing but the fine registration done once more
+  EXPECT_GT(network.links[0].median_distance, 0);
+  EXPECT_GT(network.links[0].rms_distance, network.links[0].median_distance);
+  EXPECT_LT(network.links[0].rms_distance, network.voxel_size / 2);
   const auto& covariance = network.scans[1].covariance;
   EXPECT_GT(covariance.diagonal().minCoeff(), 0);
   EXPECT_EQ(network.scans[0].covariance.norm(), 0);
@@ -173,6 +176,8 @@ TEST(Network, AScanThatNoPairPlacesIsTriedAgainstMergedNeighbours) {
   EXPECT_EQ(merged->state, LinkState::unconfirmed);
   EXPECT_EQ(merged->merged.size(), 7u);
   EXPECT_EQ(merged->merged[0], merged->target);
+  EXPECT_GT(merged->median_distance, 0) << "the joint refinement takes it to all of them";
+  EXPECT_LT(merged->median_distance, 0.1);
   const Transformation truth = site[0].world_from_scanner.inverse() * site[5].world_from_scanner;
   EXPECT_LT(pose_error(network.scans[5].world_from_scan, truth, {0, 0, 0}).translation, 0.3);
   options.pairs = PairRule::listed;

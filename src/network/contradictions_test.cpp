@@ -43,6 +43,10 @@ TEST(Contradictions, LeaveOutTheLinksBetweenTheGroupsThatContradictEachOther) {
   EXPECT_TRUE(contradicted_links(two_groups(0.6), {}).empty());
 }
 
+TEST(Contradictions, OfLeavesAreNoneBelowOnePercentAndLittleAbove) {
+  EXPECT_TRUE(contradicted_links(two_groups(0.9), {{{1, 4}, 0.012}, {{0, 5}, 0.012}}).empty());
+}
+
 TEST(Contradictions, DoNotOutweighLoopsByAPersonOrTwo) {
   EXPECT_TRUE(contradicted_links(two_groups(0.6), {{{0, 1}, 0.05}}).empty());
   // What lies within a group says nothing of the link between the groups.
