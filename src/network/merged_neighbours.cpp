@@ -78,6 +78,23 @@ NetworkLink merged_link(std::size_t scan, const std::vector<std::size_t>& merged
   return link;
 }
 
+// Of several scans to one merged cloud, each on one thread.
+std::vector<NetworkLink> merged_links(const std::vector<std::size_t>& scans, const std::vector<std::size_t>& merged,
+                                      const Network& network, FeatureShelf& features, const Options& options) {
+  const Features cloud = merged_features(merged, network, features, options);
+  std::vector<std::shared_ptr<const Features>> sources;
+  for (const std::size_t scan : scans) sources.push_back(features.get(scan));
+  Options single = options;
+  single.threads = 1;
+  std::vector<NetworkLink> links(scans.size());
+  parallel_blocks(scans.size(), options.threads, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      links[i] = merged_link(scans[i], merged, align(*sources[i], cloud, single));
+    }
+  });
+  return links;
+}
+
 }  // namespace
 
 std::vector<NetworkLink> MergedNeighbours::next(const Network& network, const std::function<void(double)>& report) {
@@ -95,21 +112,11 @@ std::vector<NetworkLink> MergedNeighbours::next(const Network& network, const st
       if (tried_.insert(attempt).second) scans_by_cloud[merged].push_back(alone[0]);
     }
   }
-  Options single = options_.pair;
-  single.threads = 1;
   std::vector<NetworkLink> links;
   double done = 0;
   for (const auto& [merged, scans] : scans_by_cloud) {
     report(done++ / static_cast<double>(scans_by_cloud.size()));
-    const Features cloud = merged_features(merged, network, features_, options_.pair);
-    std::vector<std::shared_ptr<const Features>> sources;
-    for (const std::size_t scan : scans) sources.push_back(features_.get(scan));
-    std::vector<NetworkLink> of_cloud(scans.size());
-    parallel_blocks(scans.size(), options_.pair.threads, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        of_cloud[i] = merged_link(scans[i], merged, align(*sources[i], cloud, single));
-      }
-    });
+    const std::vector<NetworkLink> of_cloud = merged_links(scans, merged, network, features_, options_.pair);
     links.insert(links.end(), of_cloud.begin(), of_cloud.end());
   }
   return links;
