@@ -9,7 +9,7 @@ namespace igsp {
 namespace {
 
 // What one pair of scans says against its place, beyond what leaves and people do; as of a pair by itself.
-constexpr double decades_per_share = 20, most_decades = 2;
+constexpr double decades_a_share = 20, most_decades_a_pair = 2;
 
 // A link that loops confirm is as strong as all of them.
 double strength(const NetworkLink& link) {
@@ -53,7 +53,7 @@ class Groups {
 };
 
 double against(const NetworkContradiction& pair) {
-  return std::min(decades_per_share * (pair.violation - doubtful_violation), most_decades) * std::numbers::ln10;
+  return std::min(decades_a_share * (pair.violation - doubtful_violation), most_decades_a_pair) * std::numbers::ln10;
 }
 
 }  // namespace

@@ -86,11 +86,11 @@ std::vector<NetworkLink> registered_pairs(const Network& network, FeatureShelf& 
 Network decided(const Network& start, std::vector<NetworkLink>& links, FeatureShelf& shelf,
                 std::span<const ScanShape> shapes, const NetworkOptions& options, const ProgressCallback& progress) {
   SeenSpace space(shelf);
-  Network network = settled(start, links, shapes, space, options);
+  Network network = settled_network(start, links, shapes, space, options);
   const auto take = [&](const std::vector<NetworkLink>& more) {
     if (more.empty()) return false;
     links.insert(links.end(), more.begin(), more.end());
-    network = settled(start, links, shapes, space, options);
+    network = settled_network(start, links, shapes, space, options);
     return true;
   };
   take(runners_up(network, shelf, shapes, options));

@@ -13,7 +13,7 @@ namespace {
 constexpr double near_enough = 3;  // [voxels]
 
 // Between scans that nothing brings together: as hard to tell from the best pose, and of a pair that shares something.
-constexpr double least_share = 0.5, least_confidence = 0.05;
+constexpr double least_share_of_best = 0.5, least_confidence_of_best = 0.05;
 
 bool agrees_with(const Network& network, const NetworkLink& link, const Transformation& target_from_source,
                  const ScanShape& source) {
@@ -24,7 +24,7 @@ bool is_worth_a_look(const Network& network, const NetworkLink& link, std::span<
   if (link.state == LinkState::used || link.state == LinkState::unconfirmed || !link.runner_up) return false;
   const std::size_t a = network.scans[link.source].component, b = network.scans[link.target].component;
   if (a == b) return agrees_with(network, link, link.runner_up->target_from_source, shapes[link.source]);
-  return link.runner_up->share >= least_share && link.confidence >= least_confidence &&
+  return link.runner_up->share >= least_share_of_best && link.confidence >= least_confidence_of_best &&
          network.components[a].size() + network.components[b].size() > 2;
 }
 

@@ -5,8 +5,8 @@
 
 namespace igsp {
 
-Network settled(const Network& start, std::vector<NetworkLink>& links, std::span<const ScanShape> shapes,
-                SeenSpace& space, const NetworkOptions& options) {
+Network settled_network(const Network& start, std::vector<NetworkLink>& links, std::span<const ScanShape> shapes,
+                        SeenSpace& space, const NetworkOptions& options) {
   for (;;) {
     Network network = start;
     network.links = links;

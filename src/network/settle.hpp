@@ -11,7 +11,7 @@ namespace igsp {
 
 /// Decides, then asks the free space of all scans against each other where this puts them. Links that it speaks against
 /// are rejected in `links` and the rest is decided anew, until it speaks against none. `start` holds the scans.
-Network settled(const Network& start, std::vector<NetworkLink>& links, std::span<const ScanShape> shapes,
-                SeenSpace& space, const NetworkOptions& options);
+Network settled_network(const Network& start, std::vector<NetworkLink>& links, std::span<const ScanShape> shapes,
+                        SeenSpace& space, const NetworkOptions& options);
 
 }  // namespace igsp
