@@ -16,10 +16,6 @@ double strength(const NetworkLink& link) {
   return vote_of(link.confidence) * static_cast<double>(1 + link.consistent_triangles);
 }
 
-bool is_used(const NetworkLink& link) {
-  return link.state == LinkState::used || link.state == LinkState::unconfirmed;
-}
-
 bool are_the_same(std::size_t a, std::size_t b, std::size_t c, std::size_t d) {
   return (a == c && b == d) || (a == d && b == c);
 }

@@ -8,6 +8,7 @@
 #include "core/parallel.hpp"
 #include "network/components.hpp"
 #include "network/control.hpp"
+#include "network/measured_graph.hpp"
 #include "network/pose_equations.hpp"
 #include "registration/point_to_plane.hpp"
 #include "registration/pose_covariance.hpp"
@@ -74,7 +75,7 @@ class Bundle {
     is_free_.resize(scans, false);
     take_surfaces(features);
     for (NetworkLink& link : network.links) {
-      if (link.state != LinkState::used && link.state != LinkState::unconfirmed) continue;
+      if (!is_used(link)) continue;
       if (link.merged.empty()) meetings_.push_back({&link, link.target});
       for (const std::size_t target : link.merged) meetings_.push_back({&link, target});
     }

@@ -74,7 +74,7 @@ class PairSearch {
     tried_.clear();
     linked_.assign(n_, {});
     for (const NetworkLink& link : now_.links) {
-      if (link.state == LinkState::used || link.state == LinkState::unconfirmed) {
+      if (is_used(link)) {
         linked_[link.source].push_back(link.target);
         linked_[link.target].push_back(link.source);
       }

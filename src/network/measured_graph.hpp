@@ -46,6 +46,9 @@ inline constexpr double doubtful_violation = 0.01;
 /// Log odds of a confidence as links count them in votes, within bounds.
 double vote_of(double confidence);
 
+/// True of a link by which the network has its scans where they are.
+bool is_used(const NetworkLink& link);
+
 /// True where the free space speaks against a pair, so that others must confirm it.
 bool is_doubtful(const NetworkLink& link);
 

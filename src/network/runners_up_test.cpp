@@ -76,6 +76,9 @@ TEST(RunnersUp, BetweenFramesAreAPairThatNeedsWitnesses) {
   site.part();
   ASSERT_EQ(site.found().size(), 1u);
   EXPECT_EQ(site.found()[0].state, LinkState::not_registered);
+  site.features[1].viewpoint.reset();
+  EXPECT_TRUE(site.found().empty()) << "nobody could bear witness";
+  site.features[1].viewpoint = Eigen::Vector3d::Zero();
   site.network.links[0].runner_up->share = 0.4;
   EXPECT_TRUE(site.found().empty()) << "the best pose explains far more";
 }

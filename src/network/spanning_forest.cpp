@@ -66,7 +66,14 @@ class Growth {
   // Without a loop: by what the scans of both components say that no link connects.
   bool stands(std::size_t link) {
     const GraphLink& one = graph_.links[link];
-    if (!ask_) return one.may_stand_alone;
+    const std::optional<std::size_t> in_favour = witnesses_for(link);
+    return in_favour && (one.may_stand_alone || (one.witnesses_needed && *in_favour >= *one.witnesses_needed));
+  }
+
+  // How many are in favour; nothing where one is against it.
+  std::optional<std::size_t> witnesses_for(std::size_t link) {
+    if (!ask_) return 0;
+    const GraphLink& one = graph_.links[link];
     std::size_t in_favour = 0;
     for (std::size_t i = 0; i < component_.size(); ++i) {
       if (component_[i] != component_[one.source]) continue;
@@ -75,12 +82,12 @@ class Growth {
         const Witness witness = witness_of(link, i, j);
         if (witness == Witness::against || (witness == Witness::doubtful && !one.may_stand_alone)) {
           forest_.is_contradicted[link] = true;
-          return false;
+          return {};
         }
         in_favour += witness == Witness::in_favour;
       }
     }
-    return one.may_stand_alone || (one.witnesses_needed && in_favour >= *one.witnesses_needed);
+    return in_favour;
   }
 
   // Components only grow, so that what was said once stays true.
@@ -133,9 +140,7 @@ class Growth {
   bool hear_witnesses_against(const std::vector<std::size_t>& links) {
     bool any = false;
     for (const std::size_t l : links) {
-      if (!needs_witnesses(l)) continue;
-      stands(l);
-      any |= forest_.is_contradicted[l];
+      if (needs_witnesses(l) && !witnesses_for(l)) any = true;
     }
     return any;
   }

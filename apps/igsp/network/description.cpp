@@ -58,6 +58,18 @@ Json link_summary(const NetworkLink& link) {
           {"rms_distance", link.rms_distance}};
 }
 
+Json cycle_summary(const NetworkCycle& cycle) {
+  return {{"scans", cycle.scans}, {"error", cycle.error}, {"closes", cycle.closes}};
+}
+
+Json contradiction_summary(const NetworkContradiction& pair) {
+  return {{"scans", pair.scans}, {"violation", pair.violation}};
+}
+
+std::size_t pairs_tried(const Network& network) {
+  return std::ranges::count_if(network.links, is_pair);
+}
+
 Json network_json(const Network& network, const NetworkOptions& options) {
   Json scans = Json::array(), links = Json::array(), cycles = Json::array(), contradictions = Json::array();
   for (const NetworkScan& scan : network.scans) {
@@ -71,10 +83,10 @@ Json network_json(const Network& network, const NetworkOptions& options) {
                      {"covariance", rows(scan.covariance)}});
   }
   for (const NetworkCycle& cycle : network.cycles) {
-    cycles.push_back({{"scans", cycle.scans}, {"error", cycle.error}, {"closes", cycle.closes}});
+    cycles.push_back(cycle_summary(cycle));
   }
   for (const NetworkContradiction& pair : network.contradictions) {
-    contradictions.push_back({{"scans", pair.scans}, {"violation", pair.violation}});
+    contradictions.push_back(contradiction_summary(pair));
   }
   for (const NetworkLink& link : network.links) {
     Json entry = link_summary(link);
@@ -118,9 +130,8 @@ std::string network_summary(const Network& network) {
   const std::size_t unconfirmed = count(network, LinkState::unconfirmed),
                     rejected = count(network, LinkState::rejected);
   text += fmt::format("\n{} of {} pairs registered, {} rejected by the network, {} {} unconfirmed (in no loop)",
-                      std::ranges::count_if(network.links, is_registered_pair),
-                      std::ranges::count_if(network.links, is_pair), rejected, unconfirmed,
-                      unconfirmed == 1 ? "link is" : "links are");
+                      std::ranges::count_if(network.links, is_registered_pair), pairs_tried(network), rejected,
+                      unconfirmed, unconfirmed == 1 ? "link is" : "links are");
   if (placed > 0) text += fmt::format("; bundle error {:.3g}", network.bundle_error);
   return text + "\n";
 }

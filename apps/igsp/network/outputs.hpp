@@ -10,7 +10,7 @@ namespace igsp::cli {
 /// scan,component,qw,qx,qy,qz,tx,ty,tz: world_from_scan, one world per component.
 std::string poses_csv(const Network& network);
 
-/// A line per pair that was tried.
+/// A line per pair that was tried, then per second look.
 std::string links_csv(const Network& network);
 
 /// Index, tx, ty, tz, qx, qy, qz, qw: as the tools for trajectories read it.
@@ -22,6 +22,12 @@ std::string network_g2o(const Network& network);
 
 /// A link but for its pose.
 Json link_summary(const NetworkLink& link);
+
+Json cycle_summary(const NetworkCycle& cycle);
+Json contradiction_summary(const NetworkContradiction& pair);
+
+/// Without second looks.
+std::size_t pairs_tried(const Network& network);
 
 /// Everything.
 Json network_json(const Network& network, const NetworkOptions& options);

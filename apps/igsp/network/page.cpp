@@ -90,7 +90,7 @@ Json loops_of(const Network& network) {
   });
   Json shown = Json::array();
   for (const NetworkCycle& cycle : std::span(cycles).first(std::min(most_rows, cycles.size()))) {
-    shown.push_back({{"scans", cycle.scans}, {"error", cycle.error}, {"closes", cycle.closes}});
+    shown.push_back(cycle_summary(cycle));
   }
   return {{"all", cycles.size()}, {"closing", std::ranges::count_if(cycles, &NetworkCycle::closes)}, {"shown", shown}};
 }
@@ -99,7 +99,7 @@ Json contradictions_of(const Network& network) {
   Json shown = Json::array();
   const std::size_t count = std::min(most_rows, network.contradictions.size());
   for (const NetworkContradiction& pair : std::span(network.contradictions).first(count)) {
-    shown.push_back({{"scans", pair.scans}, {"violation", pair.violation}});
+    shown.push_back(contradiction_summary(pair));
   }
   return {{"all", network.contradictions.size()}, {"shown", shown}};
 }
@@ -141,7 +141,7 @@ Json data_of(const Network& network, const NetworkOptions& options, std::span<co
           {"loops", loops_of(network)},
           {"contradictions", contradictions_of(network)},
           {"counts", counts},
-          {"pairs_tried", network.links.size()},
+          {"pairs_tried", pairs_tried(network)},
           {"options", to_json(options.pair)}};
 }
 

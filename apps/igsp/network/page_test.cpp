@@ -99,6 +99,14 @@ TEST(NetworkPage, ContradictionsAreCountedAndTheWorstShown) {
   EXPECT_EQ(contradictions["shown"][0]["violation"], 0.3);
 }
 
+TEST(NetworkPage, SecondLooksAreNoPairsThatWereTried) {
+  Network network;
+  network.scans.resize(2);
+  network.links.resize(2);
+  network.links[1].origin = LinkOrigin::runner_up;
+  EXPECT_EQ(page_data(network)["pairs_tried"], 1);
+}
+
 TEST(NetworkPage, AnAxisAlongAFreeDirectionHasNoSigma) {
   Network network;
   network.scans.resize(2);

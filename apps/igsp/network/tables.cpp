@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "files/csv.hpp"
+#include "network/measured_graph.hpp"
 #include "network/outputs.hpp"
 #include "network/small_motion.hpp"
 
@@ -106,7 +107,7 @@ std::string network_g2o(const Network& network) {
     if (network.scans[i].covariance.isZero(0)) lines += fmt::format("FIX {}\n", i);
   }
   for (const NetworkLink& link : network.links) {
-    if (link.state != LinkState::used && link.state != LinkState::unconfirmed) continue;
+    if (!is_used(link)) continue;
     lines += fmt::format("EDGE_SE3:QUAT {} {} {}{}\n", link.target, link.source, tum_pose(link.target_from_source),
                          upper_triangle(g2o_information(link)));
   }

@@ -16,6 +16,7 @@ function linkColour(link) {
 class StationMap {
   // onLink: called with the index of a link that was clicked.
   constructor(stage, onLink) {
+    this.draw = onceAFrame(() => this.drawNow());
     this.stage = stage;
     this.onLink = onLink;
     this.chosen = null;
@@ -48,16 +49,6 @@ class StationMap {
   choose(l) {
     this.chosen = network.links[l];
     if (this.settings.pairOnly) this.draw();
-  }
-
-  // Soon, and once for all that changed until then.
-  draw() {
-    if (this.waiting) return;
-    this.waiting = true;
-    requestAnimationFrame(() => {
-      this.waiting = false;
-      this.drawNow();
-    });
   }
 
   drawNow() {

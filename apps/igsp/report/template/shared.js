@@ -16,3 +16,16 @@ function transformed(rows, p) {
 }
 
 const minus = (p, origin) => p.map((value, i) => value - origin[i]);
+
+// Draws soon, and once for all that changed until then.
+function onceAFrame(draw) {
+  let isWaiting = false;
+  return () => {
+    if (isWaiting) return;
+    isWaiting = true;
+    requestAnimationFrame(() => {
+      isWaiting = false;
+      draw();
+    });
+  };
+}

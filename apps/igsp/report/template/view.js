@@ -33,6 +33,7 @@ const looks = {oblique: [-0.6, -1, 0.75], top: [0, -0.0001, 1], front: [0, -1, 0
 
 class View {
   constructor(canvas) {
+    this.draw = onceAFrame(() => this.drawNow());
     this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setScissorTest(true);
@@ -264,16 +265,6 @@ class View {
   aspect() {
     const canvas = this.renderer.domElement;
     return Math.max(canvas.clientWidth, 1) / (this.compare ? 2 : 1) / Math.max(canvas.clientHeight, 1);
-  }
-
-  // Soon, and once for all that changed until then.
-  draw() {
-    if (this.waiting) return;
-    this.waiting = true;
-    requestAnimationFrame(() => {
-      this.waiting = false;
-      this.drawNow();
-    });
   }
 
   drawNow() {
