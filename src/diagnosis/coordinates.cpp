@@ -19,8 +19,10 @@ constexpr double degrees_flatness = 20.0;  // a metre is a hundred thousandth of
 constexpr double far_from_zero = 10.0;     // extents
 constexpr double coarse_step = 0.25;       // voxels
 constexpr std::size_t sampled_points = 20000;
-constexpr std::size_t least_values = 8;  // fewer may lie in equal steps by chance, as the sides of a box do
-constexpr double step_tolerance = 0.01;  // of a step: decimal steps are not exact in binary
+constexpr std::size_t glanced_points = 500;  // show of most clouds already that they are neither flat nor coarse
+constexpr double far_from_flat = 100.0;      // times the thickness of what is
+constexpr std::size_t least_values = 8;      // fewer may lie in equal steps by chance, as the sides of a box do
+constexpr double step_tolerance = 0.01;      // of a step: decimal steps are not exact in binary
 
 constexpr std::array<std::string_view, 3> axis_names{"x", "y", "z"};
 
@@ -65,9 +67,27 @@ bool looks_like_degrees(const Bounds& bounds) {
          std::max(magnitude.x(), magnitude.y()) > far_from_zero * across;
 }
 
-/// The step that all values are multiples of, from the least of them on; 0 if there is none to be seen.
+/// About `most` of the points, evenly.
+Points some_of(PointView cloud, std::size_t most) {
+  const std::size_t stride = std::max<std::size_t>(1, cloud.size() / most);
+  Points some;
+  for (std::size_t i = 0; i < cloud.size(); i += stride) some.push_back(cloud[i]);
+  return some;
+}
+
+bool is_thin(const Eigen::Vector3d& deviations, int i, double thickness = flat_thickness) {
+  return deviations[i] <= thickness * deviations[2];
+}
+
+/// Square roots of the eigenvalues of the covariance, ascending: of all points where some do not show that these do not
+/// lie on a plane.
+Eigen::Vector3d settled_deviations(PointView cloud, const Bounds& bounds) {
+  const Eigen::Vector3d of_some = deviations(some_of(cloud, glanced_points), bounds);
+  return is_thin(of_some, 0, far_from_flat * flat_thickness) ? deviations(cloud, bounds) : of_some;
+}
+
+/// The step that all of the sorted values are multiples of, from the least of them on; 0 if there is none to be seen.
 double step_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
   if (values.size() < least_values) return 0;
   double step = values[1] - values[0];
@@ -85,14 +105,24 @@ struct Coarseness {
   double largest = 0;  // coordinate of that axis, in magnitude
 };
 
-Coarseness coarsest_axis(PointView cloud, const Bounds& bounds) {
-  const std::size_t stride = std::max<std::size_t>(1, cloud.size() / sampled_points);
+/// Of the axes whose steps are larger than `limit`.
+Coarseness coarsest_axis(PointView cloud, const Bounds& bounds, double limit) {
+  const auto values_of = [](const Points& points, int axis) {
+    std::vector<double> values;
+    for (const Eigen::Vector3d& point : points) values.push_back(point[axis]);
+    std::sort(values.begin(), values.end());
+    return values;
+  };
+  const auto is_finer = [&](const std::vector<double>& values) {
+    return std::ranges::adjacent_find(values, [&](double a, double b) { return b > a && b - a <= limit; }) !=
+           values.end();
+  };
+  const Points few = some_of(cloud, glanced_points), some = some_of(cloud, sampled_points);
   Coarseness coarsest;
   for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < cloud.size(); i += stride) values.push_back(cloud[i][axis]);
-    const double step = step_of(std::move(values));
-    if (step > coarsest.step) {
+    if (is_finer(values_of(few, axis))) continue;
+    const double step = step_of(values_of(some, axis));
+    if (step > std::max(limit, coarsest.step)) {
       coarsest = {axis, step, std::max(std::abs(bounds.min[axis]), std::abs(bounds.max[axis]))};
     }
   }
@@ -118,9 +148,8 @@ std::optional<Diagnosis> too_few_points(PointView source, PointView target) {
 
 std::optional<Diagnosis> flat(PointView source, PointView target) {
   const Bounds source_bounds = bounds_of(source, "source"), target_bounds = bounds_of(target, "target");
-  const Eigen::Vector3d source_deviations = deviations(source, source_bounds);
-  const Eigen::Vector3d target_deviations = deviations(target, target_bounds);
-  const auto is_thin = [](const Eigen::Vector3d& d, int i) { return d[i] <= flat_thickness * d[2]; };
+  const Eigen::Vector3d source_deviations = settled_deviations(source, source_bounds);
+  const Eigen::Vector3d target_deviations = settled_deviations(target, target_bounds);
   const std::string name = who(is_thin(source_deviations, 0), is_thin(target_deviations, 0));
   if (name.empty()) return std::nullopt;
   const Bounds& bounds = is_thin(source_deviations, 0) ? source_bounds : target_bounds;
@@ -149,10 +178,10 @@ std::optional<Diagnosis> degrees(PointView source, PointView target) {
 }
 
 std::optional<Diagnosis> coarse_coordinates(PointView source, PointView target, double voxel_size) {
-  const Coarseness of_source = coarsest_axis(source, bounds_of(source, "source"));
-  const Coarseness of_target = coarsest_axis(target, bounds_of(target, "target"));
   const double limit = coarse_step * voxel_size;
-  const std::string name = who(of_source.step > limit, of_target.step > limit);
+  const Coarseness of_source = coarsest_axis(source, bounds_of(source, "source"), limit);
+  const Coarseness of_target = coarsest_axis(target, bounds_of(target, "target"), limit);
+  const std::string name = who(of_source.step > 0, of_target.step > 0);
   if (name.empty()) return std::nullopt;
   const Coarseness& worst = of_source.step >= of_target.step ? of_source : of_target;
   const bool as_float = worst.step <= float_step(worst.largest);

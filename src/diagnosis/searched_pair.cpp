@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/concurrently.hpp"
+
 namespace igsp {
 namespace {
 
@@ -21,8 +23,11 @@ Options options_for(const Result& refused) {
 
 SearchedPair::SearchedPair(const Scan& source_scan, const Scan& target_scan, const Result& refused,
                            const ProgressCallback& progress)
-    : options(options_for(refused)),
-      source(extract_features(source_scan, options, progress)),
-      target(extract_features(target_scan, options, progress)) {}
+    : options(options_for(refused)) {
+  const auto extract = [&](const Scan& scan, Features& features) {
+    return [&](const ProgressCallback& report) { features = extract_features(scan, options, report); };
+  };
+  concurrently(options.threads, progress, extract(source_scan, source), extract(target_scan, target));
+}
 
 }  // namespace igsp
