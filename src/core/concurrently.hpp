@@ -5,7 +5,6 @@
 #include <exception>
 #include <mutex>
 #include <string>
-#include <thread>
 
 #include "core/parallel.hpp"
 #include "core/report_progress.hpp"
@@ -33,6 +32,10 @@ class RelayedProgress {
     const std::lock_guard lock(mutex_);
     is_ended_ = true;
     ended_.notify_one();
+  }
+  void wait() {
+    std::unique_lock lock(mutex_);
+    ended_.wait(lock, [this] { return is_ended_; });
   }
   /// Tells `progress` of the other thread until that ends. Throws Cancelled.
   void pass_on(const ProgressCallback& progress) {
@@ -64,8 +67,8 @@ class RelayedProgress {
 };
 
 /// first(progress) on the calling thread and second(progress) on another one at the same time; one after the other
-/// where there is one thread (0: as many as processors). `progress` is called on the calling thread alone; it hears of
-/// the second where the first has ended before. What either throws is thrown, of two the first's.
+/// where there is one thread (0: as many as processors), or none free. `progress` is called on the calling thread
+/// alone; it hears of the second where the first has ended before. What either throws is thrown, of two the first's.
 template <typename First, typename Second>
 void concurrently(int threads, const ProgressCallback& progress, const First& first, const Second& second) {
   if (concurrency(threads) == 1) {
@@ -75,22 +78,28 @@ void concurrently(int threads, const ProgressCallback& progress, const First& fi
   }
   RelayedProgress relayed;
   std::exception_ptr failure;
-  {
-    std::jthread other([&] {
-      try {
-        second(relayed.callback());
-      } catch (...) {
-        failure = std::current_exception();
-      }
-      relayed.end();
-    });
+  TaskForAnother other(threads, [&] {
     try {
-      first(progress);
-      relayed.pass_on(progress);
+      second(relayed.callback());
     } catch (...) {
-      relayed.stop();
-      throw;  // after the other thread has ended
+      failure = std::current_exception();
     }
+    relayed.end();
+  });
+  try {
+    first(progress);
+  } catch (...) {
+    relayed.stop();
+    if (!other.take_back()) relayed.wait();
+    throw;
+  }
+  if (other.take_back()) return second(progress);
+  try {
+    relayed.pass_on(progress);
+  } catch (...) {
+    relayed.stop();
+    relayed.wait();
+    throw;
   }
   if (failure) std::rethrow_exception(failure);
 }

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace igsp {
@@ -56,24 +57,53 @@ TEST(Concurrently, OnlyTheCallingThreadReports) {
 
 /// Runs until its callback answers false, as the library's stages do.
 struct Endless {
-  std::atomic<bool>& has_ended;
+  std::atomic<bool>&has_begun, &has_ended;
   void operator()(const ProgressCallback& progress) const {
+    has_begun = true;
     while (progress({"endless", 0.5})) std::this_thread::sleep_for(1ms);
     has_ended = true;
     throw Cancelled();
   }
 };
 
+void wait_for(const std::atomic<bool>& flag) {
+  for (int i = 0; i < 1000 && !flag; ++i) std::this_thread::sleep_for(1ms);
+}
+
 TEST(Concurrently, StopsTheOtherThreadAsWell) {
-  std::atomic<bool> has_ended = false;
+  std::atomic<bool> has_begun = false, has_ended = false;
   int calls = 0;
   const ProgressCallback stop = [&](const Progress&) { return ++calls < 3; };
-  EXPECT_THROW(concurrently(2, stop, do_nothing, Endless{has_ended}), Cancelled);
+  EXPECT_THROW(concurrently(2, stop, do_nothing, Endless{has_begun, has_ended}), Cancelled);
   EXPECT_TRUE(has_ended);
-  has_ended = false;
-  const auto fail = [](const ProgressCallback&) { throw std::runtime_error("disk"); };
-  EXPECT_THROW(concurrently(2, {}, fail, Endless{has_ended}), std::runtime_error);
-  EXPECT_TRUE(has_ended) << "what the first one fails of stops the second";
+  has_begun = has_ended = false;
+  const auto fail = [&](const ProgressCallback&) {
+    wait_for(has_begun);
+    throw std::runtime_error("disk");
+  };
+  EXPECT_THROW(concurrently(2, {}, fail, Endless{has_begun, has_ended}), std::runtime_error);
+  EXPECT_EQ(has_ended, has_begun) << "what the first one fails of stops the second";
+}
+
+TEST(Concurrently, DoesNotWaitForAThreadThatIsBusy) {
+  std::atomic<bool> is_busy = false, may_end = false;
+  {
+    TaskForAnother busy(2, [&] {
+      is_busy = true;
+      wait_for(may_end);
+      is_busy = false;
+    });
+    wait_for(is_busy);
+    int runs = 0;
+    concurrently(2, {}, do_nothing, [&](const ProgressCallback&) { ++runs; });
+    EXPECT_EQ(runs, 1);
+    const auto fail = [](const ProgressCallback&) { throw std::runtime_error("disk"); };
+    EXPECT_THROW(concurrently(2, {}, fail, do_nothing), std::runtime_error);
+    EXPECT_THROW(concurrently(2, {}, do_nothing, fail), std::runtime_error);
+    may_end = true;
+    busy.take_back();
+  }
+  while (is_busy) std::this_thread::sleep_for(1ms);
 }
 
 }  // namespace

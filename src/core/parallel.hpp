@@ -11,8 +11,10 @@
 #endif
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <thread>
 
 namespace igsp {
@@ -70,6 +72,33 @@ void parallel_blocks(std::size_t size, int threads, std::size_t grain, const Bod
   });
 #endif
 }
+
+/// A task for another thread, unless it is taken back before that begins. Of the threads that loops have, for they run
+/// already and where: a new one may wait for the processor of the one that made it.
+class TaskForAnother {
+ public:
+  template <typename Task>
+  TaskForAnother(int threads, const Task& task) {
+    const auto unless_taken = [task, is_taken = is_taken_] {
+      if (!is_taken->exchange(true)) task();
+    };
+#ifdef __SANITIZE_THREAD__
+    thread_ = std::jthread(unless_taken);
+#else
+    arena_of(static_cast<int>(concurrency(threads))).enqueue(unless_taken);
+#endif
+  }
+  /// Whether no thread has begun with it; none will then.
+  bool take_back() {
+    return !is_taken_->exchange(true);
+  }
+
+ private:
+  std::shared_ptr<std::atomic<bool>> is_taken_ = std::make_shared<std::atomic<bool>>(false);
+#ifdef __SANITIZE_THREAD__
+  std::jthread thread_;
+#endif
+};
 
 /// Both, at the same time where there are threads for it.
 template <typename First, typename Second>
