@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "spatial/bounds.hpp"
+#include "core/parallel.hpp"
 
 namespace igsp {
 namespace {
@@ -136,24 +136,43 @@ double float_step(double magnitude) {
 
 }  // namespace
 
-std::optional<Diagnosis> too_few_points(PointView source, PointView target) {
-  const std::string name = who(source.size() < few_points, target.size() < few_points);
+PairCoordinates::PairCoordinates(PointView source, PointView target, int threads) : threads_(threads) {
+  parallel_pair(
+      threads,
+      [&] {
+        source_ = {source, bounds_of(source, "source")};
+      },
+      [&] {
+        target_ = {target, bounds_of(target, "target")};
+      });
+}
+
+template <typename Question>
+auto PairCoordinates::of_both(const Question& question) const {
+  std::pair<decltype(question(source_)), decltype(question(target_))> answers;
+  parallel_pair(
+      threads_, [&] { answers.first = question(source_); }, [&] { answers.second = question(target_); });
+  return answers;
+}
+
+std::optional<Diagnosis> PairCoordinates::too_few() const {
+  const std::size_t in_source = source_.points.size(), in_target = target_.points.size();
+  const std::string name = who(in_source < few_points, in_target < few_points);
   if (name.empty()) return std::nullopt;
   return Diagnosis{Cause::too_few_points,
                    fmt::format("few points in {}: {} in the source, {} in the target; below some {} a scene is seldom "
                                "described well enough: take denser scans, or all of their points",
-                               name, source.size(), target.size(), few_points),
+                               name, in_source, in_target, few_points),
                    {}};
 }
 
-std::optional<Diagnosis> flat(PointView source, PointView target) {
-  const Bounds source_bounds = bounds_of(source, "source"), target_bounds = bounds_of(target, "target");
-  const Eigen::Vector3d source_deviations = settled_deviations(source, source_bounds);
-  const Eigen::Vector3d target_deviations = settled_deviations(target, target_bounds);
-  const std::string name = who(is_thin(source_deviations, 0), is_thin(target_deviations, 0));
+std::optional<Diagnosis> PairCoordinates::flat() const {
+  const auto [of_source, of_target] =
+      of_both([](const Cloud& cloud) { return settled_deviations(cloud.points, cloud.bounds); });
+  const std::string name = who(is_thin(of_source, 0), is_thin(of_target, 0));
   if (name.empty()) return std::nullopt;
-  const Bounds& bounds = is_thin(source_deviations, 0) ? source_bounds : target_bounds;
-  const bool line = is_thin(source_deviations, 1) || is_thin(target_deviations, 1);
+  const Bounds& bounds = is_thin(of_source, 0) ? source_.bounds : target_.bounds;
+  const bool line = is_thin(of_source, 1) || is_thin(of_target, 1);
   const int axis = constant_axis(bounds);  // -0 is 0, hence the sum below
   const std::string seen =
       line        ? fmt::format("all points of {} lie on a line", name)
@@ -166,9 +185,8 @@ std::optional<Diagnosis> flat(PointView source, PointView target) {
                    {}};
 }
 
-std::optional<Diagnosis> degrees(PointView source, PointView target) {
-  const std::string name =
-      who(looks_like_degrees(bounds_of(source, "source")), looks_like_degrees(bounds_of(target, "target")));
+std::optional<Diagnosis> PairCoordinates::degrees() const {
+  const std::string name = who(looks_like_degrees(source_.bounds), looks_like_degrees(target_.bounds));
   if (name.empty()) return std::nullopt;
   return Diagnosis{Cause::degrees,
                    fmt::format("x and y of {} look like longitude and latitude in degrees beside heights in metres: "
@@ -177,10 +195,10 @@ std::optional<Diagnosis> degrees(PointView source, PointView target) {
                    {}};
 }
 
-std::optional<Diagnosis> coarse_coordinates(PointView source, PointView target, double voxel_size) {
+std::optional<Diagnosis> PairCoordinates::coarse(double voxel_size) const {
   const double limit = coarse_step * voxel_size;
-  const Coarseness of_source = coarsest_axis(source, bounds_of(source, "source"), limit);
-  const Coarseness of_target = coarsest_axis(target, bounds_of(target, "target"), limit);
+  const auto [of_source, of_target] =
+      of_both([limit](const Cloud& cloud) { return coarsest_axis(cloud.points, cloud.bounds, limit); });
   const std::string name = who(of_source.step > 0, of_target.step > 0);
   if (name.empty()) return std::nullopt;
   const Coarseness& worst = of_source.step >= of_target.step ? of_source : of_target;

@@ -10,11 +10,11 @@ void add(std::vector<Diagnosis>& causes, std::optional<Diagnosis> cause) {
 }
 
 // With any of these the surfaces that are registered are not those of the scene.
-std::vector<Diagnosis> spoilt_coordinates(const Scan& source, const Scan& target, const Result& refused) {
+std::vector<Diagnosis> spoilt(const PairCoordinates& coordinates, double voxel_size) {
   std::vector<Diagnosis> causes;
-  add(causes, flat(source.points, target.points));
-  add(causes, degrees(source.points, target.points));
-  if (causes.empty()) add(causes, coarse_coordinates(source.points, target.points, refused.voxel_size));
+  add(causes, coordinates.flat());
+  add(causes, coordinates.degrees());
+  if (causes.empty()) add(causes, coordinates.coarse(voxel_size));
   return causes;
 }
 
@@ -51,13 +51,14 @@ std::string_view to_string(Cause cause) {
 std::vector<Diagnosis> diagnose(const Scan& source, const Scan& target, const Result& refused,
                                 const DiagnosisOptions& options, const ProgressCallback& progress) {
   if (refused.registered || !(refused.voxel_size > 0)) return {};
-  std::vector<Diagnosis> causes = spoilt_coordinates(source, target, refused);
+  const PairCoordinates coordinates(source.points, target.points, refused.options.threads);
+  std::vector<Diagnosis> causes = spoilt(coordinates, refused.voxel_size);
   // A voxel that is wrong by a unit of length makes fine coordinates look coarse.
   const bool may_be_scale = causes.empty() || causes.front().cause == Cause::coarse_coordinates;
   if (may_be_scale && options.search) {
     if (auto found = searched(source, target, refused, progress); !found.empty()) causes = std::move(found);
   }
-  add(causes, too_few_points(source.points, target.points));
+  add(causes, coordinates.too_few());
   return causes;
 }
 
