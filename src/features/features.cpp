@@ -158,6 +158,10 @@ Features coarser_voxels(const Features& finer) {
   features.fine_points = finer.points;
   features.cloud_points = finer.cloud_points;
   features.stray = finer.stray;
+  for (const ScannedPart& part : finer.parts) {
+    features.parts.push_back({part.viewpoint, voxel_centroids(part.fine_points, Eigen::Vector3d::Zero(),
+                                                              fine_voxels * features.voxel_size)});
+  }
   return features;
 }
 

@@ -41,7 +41,7 @@ class SharedSurface {
     for (const Eigen::Vector3d& point : points_) squared_size_ += (point - centre_).squaredNorm() / points_.size();
     std::optional<Eigen::Vector3d> viewpoint = features.viewpoint;
     if (viewpoint) *viewpoint /= features.voxel_size;
-    surface_.emplace(points_, PointGrid(points_, 1.0), normal_radius, viewpoint);
+    surface_.emplace(points_, PointGrid(points_, 1.0), normal_radius, Viewpoints(viewpoint));
   }
   SharedSurface(const SharedSurface&) = delete;
   SharedSurface& operator=(const SharedSurface&) = delete;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "igsp/point_cloud.hpp"
 
 namespace igsp {
@@ -9,8 +7,8 @@ namespace igsp {
 /// A place of a surface as its cloud has it, and where that was seen from.
 struct SeenPlace {
   const Eigen::Vector3d& point;
-  const Eigen::Vector3d& normal;  ///< unit, sign arbitrary
-  const std::optional<Eigen::Vector3d>& viewpoint;
+  const Eigen::Vector3d& normal;     ///< unit, sign arbitrary
+  const Eigen::Vector3d* viewpoint;  ///< null: not known
 
   /// 1 where the normal looks at the scanner, -1 where it looks away, 0 where nobody can tell: the viewpoint is not
   /// known, or the angle so small that the normal's own error decides.

@@ -112,8 +112,8 @@ void visit_pairs(const Surface& source, const Surface& target, const Transformat
     const Eigen::Vector3d p_normal = pose.linear() * own_normal;
     const double cosine = p_normal.dot(q_normal);
     if (std::abs(cosine) < min_normal_cosine) continue;
-    if (are_two_sides({source.point(i), own_normal, source.viewpoint()},
-                      {target.point(j), q_normal, target.viewpoint()}, cosine)) {
+    if (are_two_sides({source.point(i), own_normal, source.viewpoint(i)},
+                      {target.point(j), q_normal, target.viewpoint(j)}, cosine)) {
       continue;
     }
     visit(p, target.point(j), (q_normal + std::copysign(1.0, cosine) * p_normal).normalized());

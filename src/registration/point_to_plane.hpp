@@ -2,11 +2,11 @@
 
 #include <atomic>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "igsp/point_cloud.hpp"
+#include "registration/viewpoints.hpp"
 #include "spatial/point_grid.hpp"
 
 namespace igsp {
@@ -15,35 +15,35 @@ namespace igsp {
 /// threads at once. Refers to `points`.
 class Surface {
  public:
-  /// `normal_radius`: sphere of the principal component analysis. `viewpoint`: where all was seen from, if known.
-  Surface(PointView points, PointGrid grid, double normal_radius, std::optional<Eigen::Vector3d> viewpoint = {})
+  /// `normal_radius`: sphere of the principal component analysis.
+  Surface(PointView points, PointGrid grid, double normal_radius, Viewpoints viewpoints = Viewpoints())
       : points_(points),
         grid_(std::move(grid)),
         normal_radius_(normal_radius),
-        viewpoint_(std::move(viewpoint)),
+        viewpoints_(std::move(viewpoints)),
         normals_(points.size()),
         states_(points.size()) {}
   /// With normals that are known already.
-  Surface(PointView points, PointGrid grid, Points normals, std::optional<Eigen::Vector3d> viewpoint = {})
+  Surface(PointView points, PointGrid grid, Points normals, Viewpoints viewpoints = Viewpoints())
       : points_(points),
         grid_(std::move(grid)),
         normal_radius_(0),
-        viewpoint_(std::move(viewpoint)),
+        viewpoints_(std::move(viewpoints)),
         normals_(std::move(normals)) {}
 
   std::size_t size() const { return points_.size(); }
   PointView points() const { return points_; }
   const Eigen::Vector3d& point(std::size_t i) const { return points_[i]; }
   const PointGrid& grid() const { return grid_; }
-  Eigen::Vector3d normal(std::size_t i) const;  ///< unit, sign arbitrary
-  const std::optional<Eigen::Vector3d>& viewpoint() const { return viewpoint_; }
+  Eigen::Vector3d normal(std::size_t i) const;                                         ///< unit, sign arbitrary
+  const Eigen::Vector3d* viewpoint(std::size_t i) const { return viewpoints_.of(i); }  ///< null: not known
 
  private:
   enum State : std::uint8_t { unknown, being_kept, known };
   PointView points_;
   PointGrid grid_;
   double normal_radius_;
-  std::optional<Eigen::Vector3d> viewpoint_;
+  Viewpoints viewpoints_;
   mutable Points normals_;
   mutable std::vector<std::atomic<State>> states_;  // empty where all are known
 };

@@ -178,7 +178,7 @@ TEST(PointToPlane, TheTwoSidesOfAWallDoNotPull) {
     back.push_back(point - Eigen::Vector3d(0, 0, 1));
   }
   const auto seen_from = [](const Points& points, double x) {
-    return Surface(points, PointGrid(points, voxel_size), 3 * voxel_size, Eigen::Vector3d(x, 0, 1));
+    return Surface(points, PointGrid(points, voxel_size), 3 * voxel_size, Viewpoints(Eigen::Vector3d(x, 0, 1)));
   };
   const Surface source = seen_from(front, -3), target = seen_from(back, 3), beside = seen_from(back, -3);
   PointToPlaneOptions options = options_of(6);

@@ -92,9 +92,9 @@ double size_of(PointView points) {
 
 FineSurfaces::FineSurfaces(const Features& source_features, const Features& target_features, int number_of_threads)
     : source(source_features.fine_points, PointGrid(source_features.fine_points, source_features.voxel_size),
-             fine_normal_radius * source_features.voxel_size, source_features.viewpoint),
+             fine_normal_radius * source_features.voxel_size, Viewpoints(source_features, source_features.fine_points)),
       target(target_features.fine_points, PointGrid(target_features.fine_points, target_features.voxel_size),
-             fine_normal_radius * target_features.voxel_size, target_features.viewpoint),
+             fine_normal_radius * target_features.voxel_size, Viewpoints(target_features, target_features.fine_points)),
       voxel_size(target_features.voxel_size),
       threads(number_of_threads) {}
 

@@ -55,7 +55,8 @@ SurfaceContact surface_contact(const PreparedCloud& moved, const PreparedCloud& 
   const auto are_of_two_sides = [&](std::size_t i, std::size_t j, double normal) {
     const Features &a = moved.features, &b = fixed.features;
     if (normal < touching * v && std::max(a.curvature[i], b.curvature[j]) > scattered) return false;
-    return are_two_sides({a.points[i], a.normals[i], a.viewpoint}, {b.points[j], b.normals[j], b.viewpoint},
+    return are_two_sides({a.points[i], a.normals[i], moved.viewpoints.of(i)},
+                         {b.points[j], b.normals[j], fixed.viewpoints.of(j)},
                          (fixed_from_moved.linear() * a.normals[i]).dot(b.normals[j]));
   };
   const auto count = [&](std::size_t i, std::size_t j, double normal) {

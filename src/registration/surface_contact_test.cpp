@@ -95,6 +95,23 @@ TEST(SurfaceContact, TheOtherSideOfAWallIsNotMet) {
   EXPECT_EQ(same_side.share, unknown.share);
 }
 
+TEST(SurfaceContact, TheOtherSideOfAWallIsNotMetWhicheverOfSeveralScansSawIt) {
+  Scene scene(8);
+  Points front = scene.sample(), both = scene.sample();
+  for (Eigen::Vector3d& point : both) point.z() -= 0.8 * voxel_size;
+  const std::size_t back = both.size();
+  for (const Eigen::Vector3d& point : scene.sample()) both.emplace_back(point + Eigen::Vector3d(20, 0, 0));
+  const Eigen::Vector3d above(0, 0, 100), below(0, 0, -100);
+  const auto fused = [&](const std::optional<Eigen::Vector3d>& first) {
+    Scan scan(both);
+    scan.parts = {{back, first}, {both.size() - back, above}};
+    return scan;
+  };
+  EXPECT_GT(contact({front, above}, fused({})).overlap, 0.9);
+  EXPECT_GT(contact({front, above}, fused(above)).overlap, 0.9);
+  EXPECT_LT(contact({front, above}, fused(below)).overlap, 0.1);
+}
+
 TEST(SurfaceContact, OfCloudsThatDoNotMeetSaysNothing) {
   Scene scene(5);
   const Points a = scene.sample(), b = scene.sample();
