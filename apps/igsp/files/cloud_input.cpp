@@ -52,7 +52,7 @@ CloudInput sample_cloud(const std::filesystem::path& path, std::size_t max_point
   cloud.options = options;
   cloud.format = reader.format();
   cloud.bounds = {Eigen::Vector3d::Constant(HUGE_VAL), Eigen::Vector3d::Constant(-HUGE_VAL)};
-  PointSample kept(max_points);
+  PointSample kept(max_points, reader.declared_points());
   for (PointView chunk = reader.next_chunk(); !chunk.empty(); chunk = reader.next_chunk()) {
     for (const Eigen::Vector3d& point : chunk) {
       cloud.bounds.min = cloud.bounds.min.cwiseMin(point);

@@ -8,6 +8,7 @@ namespace igsp::cli {
 namespace {
 
 constexpr int hash_bits = 64;
+constexpr std::size_t most_sampled = 1'000'000;  // more tell no more of the scale, and cost memory of every large cloud
 
 // The finaliser of SplitMix64: every bit of the input moves half of the output's.
 std::uint64_t mixed(std::uint64_t bits) {
@@ -33,6 +34,12 @@ Eigen::Vector3d without_signed_zeros(const Eigen::Vector3d& point) {
 }
 
 }  // namespace
+
+PointSample::PointSample(std::size_t limit, std::size_t expected)
+    : limit_(limit), sampled_(std::min(limit / 2, most_sampled)) {
+  if (expected > limit) limit_ = std::min(limit, 2 * sampled_);
+  kept_.reserve(std::min({limit_, expected, most_sampled}));
+}
 
 bool PointSample::is_in(const Eigen::Vector3d& point) const {
   return halvings_ == 0 || hash_of(without_signed_zeros(point)) >> (hash_bits - halvings_) == 0;
@@ -70,12 +77,14 @@ void PointSample::shrink() {
     std::sort(begin, end, comes_before);
     return std::unique(begin, end);  // not of std::ranges, which Clang 14 cannot read
   });
-  while (kept_.size() > limit_ / 2 && halvings_ < hash_bits - 1) {
+  while (kept_.size() > sampled_ && halvings_ < hash_bits - 1) {
     ++halvings_;
     keep_of_each([this](auto begin, auto end) {
       return std::remove_if(begin, end, [this](const Eigen::Vector3d& point) { return !is_in(point); });
     });
   }
+  limit_ = std::min(limit_, 2 * sampled_);
+  if (kept_.capacity() > 2 * limit_) kept_ = Points(kept_);
 }
 
 Points PointSample::take() {

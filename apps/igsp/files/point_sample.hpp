@@ -8,12 +8,13 @@
 
 namespace igsp::cli {
 
-/// The points of a stream: all of them in their order or, of more than `limit`, a sample of at most half as many that
-/// depends on which points came, not on their order. A point is in the sample if its hash is small enough; equal points
-/// count once, since they share it. Of several scans in one stream each is sampled like that.
+/// The points of a stream: all of them in their order or, of more than `limit`, a sample of at most half as many and a
+/// million that depends on which points came, not on their order. A point is in the sample if its hash is small enough;
+/// equal points count once, since they share it. Of several scans in one stream each is sampled like that.
 class PointSample {
  public:
-  explicit PointSample(std::size_t limit) : limit_(limit) {}
+  /// `expected`: how many will come, if that is known; a sample is then one from the start.
+  PointSample(std::size_t limit, std::size_t expected);
 
   /// `part`: of which scan all of the chunk is, from 0; those of one scan come one after the other.
   void add(PointView chunk, std::size_t part = 0);
@@ -29,9 +30,9 @@ class PointSample {
   void keep_of_each(const LeaveOut& leave_out);
   bool is_in(const Eigen::Vector3d& point) const;
 
-  std::size_t limit_, seen_ = 0;
-  int halvings_ = 0;                      // a share of 2^-halvings of the different points is kept
-  std::vector<std::size_t> sizes_ = {0};  // of `kept_`, by scan
+  std::size_t limit_, sampled_, seen_ = 0;  // of a sample at most `sampled_`
+  int halvings_ = 0;                        // a share of 2^-halvings of the different points is kept
+  std::vector<std::size_t> sizes_ = {0};    // of `kept_`, by scan
   Points kept_;
 };
 
