@@ -1,7 +1,10 @@
 #include "spatial/point_grid.hpp"
 
 #include <cmath>
+#include <cstring>
 #include <limits>
+
+#include "core/multiversion.hpp"
 
 namespace igsp {
 namespace {
@@ -10,6 +13,48 @@ namespace {
 constexpr double max_cells_per_point = 20;
 constexpr double min_max_cells = 1e5;
 constexpr double least_cell = 1e-9;  // of the extent
+
+// Of so many sorted points at a time the distances are compared; generic vectors, which the compiler lowers to what the
+// machine has.
+constexpr int lanes = 8;
+using Floats = float __attribute__((vector_size(4 * lanes)));
+using Flags = std::int32_t __attribute__((vector_size(4 * lanes)));
+
+inline __attribute__((always_inline)) void load_beside(float place, const float* values, Floats& offsets) {
+  std::memcpy(&offsets, values, sizeof offsets);
+  offsets -= place;
+}
+
+inline __attribute__((always_inline)) bool is_any(const Flags& flags) {
+  using Words = std::int64_t __attribute__((vector_size(4 * lanes)));
+  const auto words = reinterpret_cast<Words>(flags);
+  return ((words[0] | words[1]) | (words[2] | words[3])) != 0;
+}
+
+// Looks at whole vectors, so at points of the next cells as well, which are candidates like any other.
+IGSP_MULTIVERSION std::int64_t nearest_of(const PointGrid& grid, const Eigen::Vector3f& centre, float radius) {
+  const float cx = centre.x(), cy = centre.y(), cz = centre.z();
+  float best = radius * radius;
+  std::int64_t nearest = -1;
+  grid.visit_runs(centre, radius, best, [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t first = begin; first < end; first += lanes) {
+      Floats dx, dy, dz;
+      load_beside(cx, &grid.x[first], dx), load_beside(cy, &grid.y[first], dy), load_beside(cz, &grid.z[first], dz);
+      const Floats squared = dx * dx + dy * dy + dz * dz;
+      if (!is_any(squared <= best)) continue;
+      const std::size_t count = std::min<std::size_t>(lanes, grid.size() - first);
+      for (std::size_t lane = 0; lane < count; ++lane) {
+        // Ties go to the lower original index, so that the answer does not depend on the cells.
+        const std::uint32_t i = grid.index[first + lane];
+        if (squared[lane] < best || (squared[lane] == best && (nearest < 0 || i < nearest))) {
+          best = squared[lane];
+          nearest = i;
+        }
+      }
+    }
+  });
+  return nearest;
+}
 
 }  // namespace
 
@@ -40,9 +85,9 @@ PointGrid::PointGrid(PointView points, double wanted_cell_size) : index(points.s
   for (std::size_t c = 1; c < start.size(); ++c) start[c] += start[c - 1];
 
   std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
-  x.resize(points.size());
-  y.resize(points.size());
-  z.resize(points.size());
+  for (std::vector<float>* coordinates : {&x, &y, &z}) {
+    coordinates->assign(points.size() + lanes - 1, std::numeric_limits<float>::infinity());
+  }
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::uint32_t position = next[cell[i]]++;
     index[position] = static_cast<std::uint32_t>(i);
@@ -62,21 +107,7 @@ std::int64_t PointGrid::nearest(const Eigen::Vector3f& centre, float radius) con
 }
 
 std::int64_t PointGrid::nearest_within(const Eigen::Vector3f& centre, float radius) const {
-  const float cx = centre.x(), cy = centre.y(), cz = centre.z();
-  float best = radius * radius;
-  std::int64_t nearest = -1;
-  visit_runs(centre, radius, best, [&](std::uint32_t begin, std::uint32_t end) {
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const float dx = x[i] - cx, dy = y[i] - cy, dz = z[i] - cz;
-      const float squared = dx * dx + dy * dy + dz * dz;
-      // Ties go to the lower original index, so that the answer does not depend on the cells.
-      if (squared < best || (squared == best && (nearest < 0 || index[i] < nearest))) {
-        best = squared;
-        nearest = index[i];
-      }
-    }
-  });
-  return nearest;
+  return nearest_of(*this, centre, radius);
 }
 
 }  // namespace igsp

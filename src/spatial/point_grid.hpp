@@ -78,7 +78,7 @@ class PointGrid {
   std::array<int, 3> cells;
   std::vector<std::uint32_t> start;  ///< first sorted position of every cell, one more at the end
   std::vector<std::uint32_t> index;  ///< original index of every sorted position
-  std::vector<float> x, y, z;
+  std::vector<float> x, y, z;        ///< of every sorted position, and a few at infinity for the last vector
 
  private:
   float distance_to_cell(float coordinate, int cell) const {
