@@ -175,6 +175,9 @@ MUTANTS = [
     ("registration/verdict.cpp", "at_v.lying() < lying_on_it &&", "", "lines that lie beside each other are not coarse"),
     ("estimation/robust_fit.cpp", "squaredNorm(), scale * scale)", "squaredNorm(), scale)", "scale of the robust weight"),
     ("registration/common_frame.cpp", "frames.push_back(cache_[i].rotation.transpose());", "frames.push_back(cache_[i].rotation);", "the common frame, seen in the source"),
+    ("registration/viewpoints.cpp", "scan_of_seen[nearest])", "0u)", "whichever of several scans saw a place"),
+    ("features/features.cpp", "for (const ScannedPart& part : finer.parts) {", "for (const ScannedPart& part : features.parts) {", "several scans at larger voxels"),
+    ("spatial/point_grid.cpp", "if (!is_any(squared <= best)) continue;", "if (!is_any(squared < best)) continue;", "of equally near points the first"),
     # Many scans
     ("network/pose_equations.cpp", "-transport(Transformation::Identity()", "transport(Transformation::Identity()", "pose graph: the target's side"),
     ("network/pose_equations.cpp", "solver.solve(-gradient_)", "solver.solve(gradient_)", "pose graph: direction of a step"),

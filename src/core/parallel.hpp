@@ -78,7 +78,7 @@ void parallel_blocks(std::size_t size, int threads, std::size_t grain, const Bod
 class TaskForAnother {
  public:
   template <typename Task>
-  TaskForAnother(int threads, const Task& task) {
+  TaskForAnother([[maybe_unused]] int threads, const Task& task) {
     const auto unless_taken = [task, is_taken = is_taken_] {
       if (!is_taken->exchange(true)) task();
     };

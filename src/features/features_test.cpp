@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/core_testing.hpp"
+#include "features/extraction.hpp"
 #include "features/features_testing.hpp"
 #include "igsp/errors.hpp"
 
@@ -138,6 +139,19 @@ TEST(ExtractFeatures, TakesManyPointsAtTwoPlaces) {
   Options options = feature_options();
   options.scale.voxel_size = 0;
   EXPECT_EQ(extract_features(points, options).points.size(), 2u);
+}
+
+TEST(CoarserVoxels, OfSeveralScansKnowWhoSawThem) {
+  const Points points = cloud(6);
+  Scan scan(points);
+  scan.parts = {{8000, Eigen::Vector3d(0, 0, 5)}, {points.size() - 8000, Eigen::Vector3d(1, 2, 5)}};
+  const Features fine = extract_features(scan, feature_options()), coarse = coarser_voxels(fine);
+  ASSERT_EQ(coarse.parts.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(coarse.parts[i].viewpoint, fine.parts[i].viewpoint);
+    EXPECT_LT(coarse.parts[i].fine_points.size(), fine.parts[i].fine_points.size());
+    EXPECT_GT(coarse.parts[i].fine_points.size(), 100u);
+  }
 }
 
 TEST(ExtractFeatures, RefusesWhatIsNoCloud) {
