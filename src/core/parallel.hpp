@@ -73,8 +73,8 @@ void parallel_blocks(std::size_t size, int threads, std::size_t grain, const Bod
 #endif
 }
 
-/// A task for another thread, unless it is taken back before that begins. Of the threads that loops have, for they run
-/// already and where: a new one may wait for the processor of the one that made it.
+/// A task for another thread, unless it is taken back before that begins. It is one of the threads that loops have,
+/// which stands on a processor of its own already; a new one may wait some milliseconds for that of its maker.
 class TaskForAnother {
  public:
   template <typename Task>
