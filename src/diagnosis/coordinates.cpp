@@ -117,11 +117,11 @@ Coarseness coarsest_axis(PointView cloud, const Bounds& bounds, double limit) {
     return std::ranges::adjacent_find(values, [&](double a, double b) { return b > a && b - a <= limit; }) !=
            values.end();
   };
-  const Points few = some_of(cloud, glanced_points), some = some_of(cloud, sampled_points);
+  const Points few = some_of(cloud, glanced_points);
   Coarseness coarsest;
   for (int axis = 0; axis < 3; ++axis) {
     if (is_finer(values_of(few, axis))) continue;
-    const double step = step_of(values_of(some, axis));
+    const double step = step_of(values_of(some_of(cloud, sampled_points), axis));
     if (step > std::max(limit, coarsest.step)) {
       coarsest = {axis, step, std::max(std::abs(bounds.min[axis]), std::abs(bounds.max[axis]))};
     }
