@@ -41,6 +41,8 @@ struct Features {
   std::vector<Descriptor> descriptors;   ///< per keypoint, in its frame
   std::size_t cloud_points = 0;          ///< of the cloud as given
   StrayPoints stray;                     ///< of them, those that were left out
+  /// The same at voxels of 2, 4 and 8 times the size, as far as there are enough of them: what a search begins with.
+  std::vector<Features> coarser;
   std::vector<std::pair<std::string, double>> timings_s;  ///< per stage, wall seconds, in order
 };
 

@@ -56,6 +56,8 @@ void bind_features(nb::module_& module) {
                    "(K, 3, 3) float64: columns x, y, n of the local reference frame.")
       .def_prop_ro("descriptors", &view<&Features::descriptors>,
                    "(K, 7) uint64: Binary Shape Context, 435 bits padded to 448.")
+      .def_ro("coarser", &Features::coarser,
+              "List of Features: the same at voxels of 2, 4 and 8 times the size, as far as there are enough of them.")
       .def_ro("cloud_points", &Features::cloud_points, "Points of the cloud as given.")
       .def_ro("timings_s", &Features::timings_s, "(stage, wall seconds), in order.")
       .def("__repr__", [](const Features& features) {

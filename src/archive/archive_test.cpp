@@ -67,6 +67,8 @@ template <typename T>
 void fill(Random& random, std::optional<T>& value);
 template <typename T>
 void fill(Random& random, std::vector<T>& values);
+// Each of voxels twice as large as those before, and without coarser ones.
+void fill(Random& random, std::vector<Features>& coarser);
 template <HasLayout T>
 void fill(Random& random, T& value) {
   std::apply([&](const auto&... fields) { (fill(random, value.*fields.member), ...); }, Layout<T>::fields);
@@ -87,12 +89,26 @@ void fill(Random& random, std::vector<T>& values) {
   for (T& value : values) fill(random, value);
 }
 
+constexpr double voxel_size = 0.5;
+
+void fill(Random& random, std::vector<Features>& coarser) {
+  static bool is_inside = false;
+  if (is_inside) return;
+  is_inside = true;
+  coarser.resize(3);
+  for (std::size_t k = 0; k < coarser.size(); ++k) {
+    fill(random, coarser[k]);
+    coarser[k].voxel_size = voxel_size * std::exp2(k + 1);
+  }
+  is_inside = false;
+}
+
 template <typename T>
 T filled(std::uint64_t seed) {
   Random random(seed);
   T value{};
   fill(random, value);
-  if constexpr (std::is_same_v<T, Features>) value.voxel_size = 0.5;
+  if constexpr (std::is_same_v<T, Features>) value.voxel_size = voxel_size;
   return value;
 }
 
@@ -192,6 +208,16 @@ TEST(ArchiveReasons, NameWhatIsWrong) {
   EXPECT_NE(reason<Features>(bytes.substr(0, bytes.size() - 5)).find("cut off"), std::string::npos);
 }
 
+TEST(ArchiveReasons, OfStructsInsideOfStructsWithoutEnd) {
+  Features deep;
+  for (int depth = 0; depth < 20; ++depth) {
+    Features outer;
+    outer.coarser.push_back(std::move(deep));
+    deep = std::move(outer);
+  }
+  EXPECT_NE(reason<Features>(pack(deep)).find("deeper than any is written"), std::string::npos);
+}
+
 TEST(ArchiveReasons, OfFeaturesThatContradictThemselves) {
   const auto reason_of = [](auto change) {
     auto features = filled<Features>(8);
@@ -212,6 +238,9 @@ TEST(ArchiveReasons, OfFeaturesThatContradictThemselves) {
            {reason_of([](Features& f) { f.frames[2](1, 1) = 2; }), "an entry of frames is not finite or beyond"},
            {reason_of([&](Features& f) { f.curvature[1] = static_cast<float>(nan); }), "a curvature is not finite"},
            {reason_of([&](Features& f) { f.viewpoint->x() = nan; }), "viewpoint is not finite"},
+           {reason_of([](Features& f) { f.coarser[1].voxel_size *= 2; }), "coarser voxels are not twice as large"},
+           {reason_of([](Features& f) { f.coarser[1].normals.pop_back(); }), "7 normals for 8 points"},
+           {reason_of([](Features& f) { f.coarser[2].coarser.resize(1); }), "coarser voxels of coarser voxels"},
            {reason_of([&](Features& f) { f.parts[1].viewpoint.x() = nan; }), "viewpoint of a part is not finite"},
            {reason_of([](Features& f) { f.parts[1].fine_points[2].x() = 1e10; }), "an entry of fine_points of a part"},
            {reason_of([&](Features& f) { f.origin.x() = nan; }), "origin is not finite"},

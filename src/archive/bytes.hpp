@@ -88,6 +88,15 @@ class Decoder {
     return static_cast<std::size_t>(claimed);
   }
   std::string_view text() { return raw(count(1)); }
+  /// Reads a struct: `read()`, which may come to this again for structs inside, though not deeper than any is written.
+  template <typename Read>
+  void nested(const Read& read) {
+    constexpr int deepest = 16;
+    if (depth_ == deepest) fail("structs inside of structs, deeper than any is written");
+    ++depth_;
+    read();
+    --depth_;
+  }
   [[noreturn]] void fail(const std::string& what) const {
     throw Fault("byte " + std::to_string(offset_) + ": " + what);
   }
@@ -95,6 +104,7 @@ class Decoder {
  private:
   std::string_view bytes_;
   std::size_t offset_ = 0;
+  int depth_ = 0;
 };
 
 }  // namespace igsp::archive

@@ -198,7 +198,7 @@ struct Codec<T> {
     for_each_field([&](const auto& field) { archive::put(out, value.*field.member); });
   }
   static void get(Decoder& in, T& value) {
-    for_each_field([&](const auto& field) { archive::get(in, value.*field.member); });
+    in.nested([&] { for_each_field([&](const auto& field) { archive::get(in, value.*field.member); }); });
   }
   static std::string describe() { return std::string(Layout<T>::name); }
   /// With its fields; `describe` alone names it, so that a struct may hold others of its kind.

@@ -58,6 +58,13 @@ void require_consistent(const Features& features) {
   require_entries_up_to(max_unit, features.frames, "frames");
   require(std::ranges::all_of(features.curvature, [](float value) { return std::isfinite(value); }),
           "a curvature is not finite");
+  double voxel_size = features.voxel_size;
+  for (const Features& coarser : features.coarser) {
+    voxel_size *= 2;
+    require(coarser.voxel_size == voxel_size, "coarser voxels are not twice as large as those before");
+    require(coarser.coarser.empty(), "coarser voxels of coarser voxels");
+    require_consistent(coarser);
+  }
 }
 
 void require_consistent(const Result& result) {

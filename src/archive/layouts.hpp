@@ -72,6 +72,7 @@ struct Layout<Features> {
       Field{"descriptors", &Features::descriptors},
       Field{"cloud_points", &Features::cloud_points},
       Field{"stray", &Features::stray},
+      Field{"coarser", &Features::coarser},
       Field{"timings_s", &Features::timings_s},
   };
 };

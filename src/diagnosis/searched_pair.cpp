@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/concurrently.hpp"
+#include "features/extraction.hpp"
 
 namespace igsp {
 namespace {
@@ -25,7 +26,9 @@ SearchedPair::SearchedPair(const Scan& source_scan, const Scan& target_scan, con
                            const ProgressCallback& progress)
     : options(options_for(refused)) {
   const auto extract = [&](const Scan& scan, Features& features) {
-    return [&](const ProgressCallback& report) { features = extract_features(scan, options, report); };
+    return [&](const ProgressCallback& report) {
+      features = extract_features(TrimmedScan(scan, "cloud"), options, report, Described::at_one_scale);
+    };
   };
   concurrently(options.threads, progress, extract(source_scan, source), extract(target_scan, target));
 }

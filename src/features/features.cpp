@@ -80,10 +80,28 @@ void take_viewpoints(const TrimmedScan& scan, const ScatterFilter& filter, Featu
   }
 }
 
+void add_coarser(const Options& options, StageClock& clock, Features& features) {
+  clock.start("coarser scale");
+  const ProgressCallback keep_asking = [&](const Progress&) {
+    // Throws where the caller wants to stop.
+    clock.report((static_cast<double>(features.coarser.size()) + 0.5) / (most_scales - 1));
+    return true;
+  };
+  for (const Features* below = &features;
+       features.coarser.size() + 1 < most_scales && below->points.size() >= enough_voxels_for_coarser;
+       below = &features.coarser.back()) {
+    Features coarser = coarser_voxels(*below);
+    StageClock own(keep_asking);
+    complete(options, own, coarser);
+    features.coarser.push_back(std::move(coarser));
+  }
+}
+
 // Where single precision is at home, and back.
-Features extract_in_unit(double unit, const TrimmedScan& scan, Options options, const ProgressCallback& progress) {
+Features extract_in_unit(double unit, const TrimmedScan& scan, Options options, const ProgressCallback& progress,
+                         Described described) {
   options.scale.voxel_size /= unit;
-  Features features = extract_features(scan.in_unit(unit), options, progress);
+  Features features = extract_features(scan.in_unit(unit), options, progress, described);
   scale_lengths(features, unit);
   return features;
 }
@@ -92,15 +110,15 @@ Features extract_in_unit(double unit, const TrimmedScan& scan, Options options, 
 
 Features extract_features(const Scan& scan, const Options& options, const ProgressCallback& progress) {
   validate(options);
-  return extract_features(TrimmedScan(scan, "cloud"), options, progress);
+  return extract_features(TrimmedScan(scan, "cloud"), options, progress, Described::at_all_scales);
 }
 
 Features extract_features(const TrimmedScan& scan, const Options& options, const ProgressCallback& progress,
-                          Keypoints keypoints) {
+                          Described described) {
   const TrimmedCloud& trimmed = scan.cloud;
   const Bounds& bounds = trimmed.bounds();
   if (const double unit = unit_of_length(bounds, bounds, options.scale.voxel_size); unit != 1) {
-    return extract_in_unit(unit, scan, options, progress);
+    return extract_in_unit(unit, scan, options, progress, described);
   }
   PointView cloud = trimmed.points();
   StageClock clock(progress);
@@ -117,7 +135,8 @@ Features extract_features(const TrimmedScan& scan, const Options& options, const
   features.fine_points = local_centroids(cloud, bounds, fine_voxels * features.voxel_size);
   take_viewpoints(scan, filter, features);
 
-  if (keypoints == Keypoints::now) complete(options, clock, features);
+  if (described != Described::as_voxels) complete(options, clock, features);
+  if (described == Described::at_all_scales) add_coarser(options, clock, features);
   clock.finish();
   features.timings_s = clock.timings();
   return features;
@@ -133,6 +152,7 @@ void complete(const Options& options, StageClock& clock, Features& features) {
 Features mirrored_features(const Features& features, const Options& options) {
   const Eigen::Vector3d reflection(-1, 1, 1);
   Features image = features;
+  image.coarser.clear();
   for (Points* points : {&image.points, &image.normals, &image.fine_points}) {
     for (Eigen::Vector3d& point : *points) point = point.cwiseProduct(reflection);
   }

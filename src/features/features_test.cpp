@@ -45,6 +45,8 @@ void expect_same(const Features& a, const Features& b) {
   EXPECT_EQ(a.keypoints, b.keypoints);
   EXPECT_EQ(a.frames, b.frames);
   EXPECT_EQ(a.descriptors, b.descriptors);
+  ASSERT_EQ(a.coarser.size(), b.coarser.size());
+  for (std::size_t k = 0; k < a.coarser.size(); ++k) expect_same(a.coarser[k], b.coarser[k]);
 }
 
 TEST(ExtractFeatures, DescribesOneCloud) {
@@ -152,6 +154,23 @@ TEST(CoarserVoxels, OfSeveralScansKnowWhoSawThem) {
     EXPECT_LT(coarse.parts[i].fine_points.size(), fine.parts[i].fine_points.size());
     EXPECT_GT(coarse.parts[i].fine_points.size(), 100u);
   }
+}
+
+TEST(CoarserVoxels, AreDescribedAsFarAsThereAreEnough) {
+  const Features features = extract_features(cloud(9), feature_options());
+  ASSERT_GE(features.coarser.size(), 1u);
+  ASSERT_LT(features.coarser.size(), most_scales);
+  const Features* finer = &features;
+  for (const Features& coarser : features.coarser) {
+    EXPECT_GE(finer->points.size(), enough_voxels_for_coarser);
+    EXPECT_EQ(coarser.voxel_size, 2 * finer->voxel_size);
+    EXPECT_EQ(coarser.points, coarser_voxels(*finer).points);
+    EXPECT_EQ(coarser.descriptors.size(), coarser.keypoints.size());
+    EXPECT_FALSE(coarser.keypoints.empty());
+    EXPECT_TRUE(coarser.coarser.empty());
+    finer = &coarser;
+  }
+  EXPECT_TRUE(features.coarser.size() + 1 == most_scales || finer->points.size() < enough_voxels_for_coarser);
 }
 
 TEST(ExtractFeatures, RefusesWhatIsNoCloud) {

@@ -180,7 +180,7 @@ Result align_points(const TrimmedScan& source, const TrimmedScan& target, const 
   Features source_features, target_features;
   const auto extract = [&](const TrimmedScan& scan, Features& features) {
     return [&](const ProgressCallback& report) {
-      features = extract_features(scan, scaled, report, Keypoints::later);
+      features = extract_features(scan, scaled, report, Described::as_voxels);
       features.timings_s.clear();  // the clock here tells of both
     };
   };

@@ -11,8 +11,6 @@ namespace igsp {
 namespace {
 
 constexpr int stages = 4;  // keypoints and descriptors of both
-constexpr std::size_t most_rungs = 4;
-constexpr std::size_t min_voxels = 1200;  // on the rung below: a quarter of them is left
 
 }  // namespace
 
@@ -25,18 +23,25 @@ ScaleLadder::ScaleLadder(const Features& source, const Features& target, Complet
                          StageClock& clock)
     : complete_(std::move(complete)), options_(options), clock_(clock), space_(source, target) {
   rungs_.push_back({source, target, {}});
-  while (rungs_.size() < most_rungs) {
+  while (rungs_.size() < most_scales) {
     const Rung& below = rungs_.back();
-    if (std::min(below.source.points.size(), below.target.points.size()) < min_voxels) break;
-    Coarser& pair = coarser_.emplace_back();
+    if (std::min(below.source.points.size(), below.target.points.size()) < enough_voxels_for_coarser) break;
+    const std::size_t k = coarser_.size();
+    Coarser& made = coarser_.emplace_back();
+    const auto coarser = [k](const Features& features, const Features& finer, Features& own) -> const Features& {
+      if (k < features.coarser.size()) return features.coarser[k];
+      return own = coarser_voxels(finer);
+    };
+    const Features *of_source = nullptr, *of_target = nullptr;
     parallel_pair(
-        options.threads, [&] { pair.source = coarser_voxels(below.source); },
-        [&] { pair.target = coarser_voxels(below.target); });
-    rungs_.push_back({pair.source, pair.target, {}});
+        options.threads, [&] { of_source = &coarser(source, below.source, made.source); },
+        [&] { of_target = &coarser(target, below.target, made.target); });
+    rungs_.push_back({*of_source, *of_target, {}});
   }
 }
 
 void ScaleLadder::complete_coarser(Coarser& pair) {
+  if (pair.source.points.empty() && pair.target.points.empty()) return;
   clock_.start("coarser scale");
   std::string stage;
   int begun = 0;

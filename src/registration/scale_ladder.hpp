@@ -41,7 +41,7 @@ class ScaleLadder {
 
  private:
   struct Coarser {
-    Features source, target;
+    Features source, target;  // empty where the features have them
   };
   struct Clouds {
     Clouds(const Features& source_features, const Features& target_features, const Options& options);

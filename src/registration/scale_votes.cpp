@@ -76,7 +76,7 @@ std::vector<double> voted_factors(const Scan& source, const Scan& target, const 
   Options scaled = options;
   const auto features_at = [&](const TrimmedScan& scan, double voxel_size) {
     scaled.scale.voxel_size = voxel_size;
-    return extract_features(scan, scaled, progress);
+    return extract_features(scan, scaled, progress, Described::at_one_scale);
   };
   const Features target_features = features_at(fixed, target_size);
   std::vector<RatioPeak> peaks;
