@@ -258,21 +258,20 @@ std::vector<Descriptor> sign_variants(std::span<const Descriptor> descriptors, i
   return result;
 }
 
-std::vector<std::vector<Descriptor>> describe_in_frames(const SupportTable& supports,
-                                                        std::span<const Eigen::Matrix3d> frames,
-                                                        double descriptor_radius, int threads) {
-  std::vector descriptors(frames.size(), std::vector<Descriptor>(supports.size()));
+void describe_in_frames(const SupportTable& supports, const EveryNth& chosen, std::span<const Eigen::Matrix3d> frames,
+                        double descriptor_radius, int threads, std::span<std::vector<Descriptor>* const> descriptors) {
+  for (std::vector<Descriptor>* of_frame : descriptors) of_frame->resize(supports.size());
   const std::size_t grain = std::max<std::size_t>(1, 32 / std::max<std::size_t>(1, frames.size()));
   parallel_blocks(supports.size(), threads, grain, [&](std::size_t begin, std::size_t end) {
     Projected projected;
     // All frames of a support while it is in the cache.
     for (std::size_t i = begin; i < end; ++i) {
+      if (!chosen.has(i)) continue;
       for (std::size_t k = 0; k < frames.size(); ++k) {
-        descriptors[k][i] = describe(supports[i], frames[k], descriptor_radius, projected);
+        (*descriptors[k])[i] = describe(supports[i], frames[k], descriptor_radius, projected);
       }
     }
   });
-  return descriptors;
 }
 
 }  // namespace igsp

@@ -20,9 +20,15 @@ Descriptor flipped(const Descriptor& descriptor, int frame_flip);
 /// The variants of every descriptor, row-major (descriptors x variants): flips 0..3, or 0..1 for levelled frames.
 std::vector<Descriptor> sign_variants(std::span<const Descriptor> descriptors, int variants);
 
-/// Descriptors of many places, result[frame][place], each frame being common to all of them: no local one takes part.
-std::vector<std::vector<Descriptor>> describe_in_frames(const SupportTable& supports,
-                                                        std::span<const Eigen::Matrix3d> frames,
-                                                        double descriptor_radius, int threads);
+/// Every so many of the places, from the first one on, save those that are among every so many others.
+struct EveryNth {
+  std::size_t step = 1, but_not = 0;  ///< 0: no others
+  bool has(std::size_t place) const { return place % step == 0 && (but_not == 0 || place % but_not != 0); }
+};
+
+/// Descriptors of many places in `descriptors`[frame][place], each frame being common to all of them: no local one
+/// takes part. Of the places that are chosen; the others stay as they are.
+void describe_in_frames(const SupportTable& supports, const EveryNth& chosen, std::span<const Eigen::Matrix3d> frames,
+                        double descriptor_radius, int threads, std::span<std::vector<Descriptor>* const> descriptors);
 
 }  // namespace igsp

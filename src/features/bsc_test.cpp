@@ -326,8 +326,14 @@ TEST(Bsc, InCommonFramesIsTheSameForEveryThreadCount) {
   const SupportTable supports = gather_supports(grid, places, radius);
   ASSERT_EQ(supports.size(), places.size());
   const std::vector<Eigen::Matrix3d> frames{random.rotation(), random.rotation(), random.rotation()};
-  const auto found = describe_in_frames(supports, frames, radius, 1);
-  ASSERT_EQ(found.size(), frames.size());
+  const auto described = [&](int threads, std::initializer_list<EveryNth> parts) {
+    std::vector<std::vector<Descriptor>> descriptors(frames.size());
+    std::vector<std::vector<Descriptor>*> of_frames;
+    for (auto& of_frame : descriptors) of_frames.push_back(&of_frame);
+    for (const EveryNth& part : parts) describe_in_frames(supports, part, frames, radius, threads, of_frames);
+    return descriptors;
+  };
+  const auto found = described(1, {{}});
   for (std::size_t k = 0; k < frames.size(); ++k) {
     ASSERT_EQ(found[k].size(), places.size());
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -336,8 +342,10 @@ TEST(Bsc, InCommonFramesIsTheSameForEveryThreadCount) {
       EXPECT_EQ(found[k][i], binary_shape_context(support, frames[k], radius));
     }
   }
-  for (const int threads : {0, 2, 4}) EXPECT_EQ(describe_in_frames(supports, frames, radius, threads), found);
-  EXPECT_TRUE(describe_in_frames(supports, {}, radius, 1).empty());
+  for (const int threads : {0, 2, 4}) EXPECT_EQ(described(threads, {{}}), found);
+  EXPECT_EQ(described(2, {{.step = 7}, {.step = 1, .but_not = 7}}), found);
+  const auto some = described(1, {{.step = 7}});
+  for (std::size_t i = 0; i < places.size(); ++i) EXPECT_EQ(some[1][i], i % 7 == 0 ? found[1][i] : Descriptor{});
 }
 
 TEST(Support, HoldsThePointsWithinItsReach) {

@@ -14,7 +14,7 @@
 namespace igsp {
 namespace {
 
-constexpr double reuse_angle_rad = 2.0 * M_PI / 180.0;
+constexpr std::size_t looked_at_first = 45;
 constexpr double agreeing_distance = 2.5;                        // voxels
 constexpr std::array<double, 2> mode_radii{4.0, 8.0};            // voxels
 constexpr std::array<double, 4> fit_scales{4.0, 3.0, 2.0, 2.0};  // voxels
@@ -70,11 +70,11 @@ CommonFrame::CommonFrame(const PreparedCloud& source, const PreparedCloud& targe
                          int threads)
     : source_(source), target_(target), descriptor_radius_(descriptor_radius), threads_(threads) {}
 
-void CommonFrame::describe(std::span<const Transformation> target_from_source) {
+void CommonFrame::describe(std::span<const Transformation> target_from_source, Look look, double reuse_angle_rad) {
   target_descriptors();
   std::vector<Eigen::Matrix3d> rotations;
   for (const Transformation& pose : target_from_source) rotations.push_back(pose.linear());
-  describe_source(rotations);
+  describe_source(rotations, look, reuse_angle_rad);
 }
 
 const std::vector<Descriptor>& CommonFrame::target_descriptors() {
@@ -84,22 +84,31 @@ const std::vector<Descriptor>& CommonFrame::target_descriptors() {
         threads_, [&] { target = gather_supports(target_.grid, target_.keypoints, descriptor_radius_); },
         [&] { source_supports(); });
     const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-    target_descriptors_ = std::move(describe_in_frames(target, {&axes, 1}, descriptor_radius_, threads_).front());
+    std::vector<Descriptor>* const descriptors = &target_descriptors_.emplace();
+    describe_in_frames(target, {}, {&axes, 1}, descriptor_radius_, threads_, {&descriptors, 1});
   }
   return *target_descriptors_;
 }
 
-const std::vector<Descriptor>& CommonFrame::source_descriptors(const Eigen::Matrix3d& target_from_source) {
-  if (const std::vector<Descriptor>* descriptors = known(target_from_source)) return *descriptors;
-  describe_source({&target_from_source, 1});
-  return cache_.back().descriptors;
+const std::vector<Descriptor>& CommonFrame::source_descriptors(const Eigen::Matrix3d& target_from_source, Look look,
+                                                               double reuse_angle_rad) {
+  describe_source({&target_from_source, 1}, look, reuse_angle_rad);
+  return known(target_from_source, look, reuse_angle_rad)->descriptors;
 }
 
-const std::vector<Descriptor>* CommonFrame::known(const Eigen::Matrix3d& target_from_source) const {
-  for (const Cached& cached : cache_) {
-    if (rotation_error_rad(cached.rotation, target_from_source) < reuse_angle_rad) return &cached.descriptors;
+std::size_t CommonFrame::first_look_step() const {
+  return std::max<std::size_t>(1, source_.keypoints.size() / looked_at_first);
+}
+
+// The nearest one that is described as far as that.
+CommonFrame::Cached* CommonFrame::known(const Eigen::Matrix3d& target_from_source, Look look, double reuse_angle_rad) {
+  Cached* nearest = nullptr;
+  for (Cached& cached : cache_) {
+    if (cached.look < look) continue;
+    const double angle = rotation_error_rad(cached.rotation, target_from_source);
+    if (angle < reuse_angle_rad) nearest = &cached, reuse_angle_rad = angle;
   }
-  return nullptr;
+  return nearest;
 }
 
 const SupportTable& CommonFrame::source_supports() {
@@ -107,22 +116,42 @@ const SupportTable& CommonFrame::source_supports() {
   return *source_supports_;
 }
 
-void CommonFrame::describe_source(std::span<const Eigen::Matrix3d> target_from_source) {
-  const std::size_t before = cache_.size();
+void CommonFrame::describe_source(std::span<const Eigen::Matrix3d> target_from_source, Look look,
+                                  double reuse_angle_rad) {
+  // By what is described of them already.
+  std::vector<Cached*> untouched, begun;
   for (const Eigen::Matrix3d& rotation : target_from_source) {
-    if (known(rotation) == nullptr) cache_.push_back({rotation, {}});
+    if (known(rotation, look, reuse_angle_rad) != nullptr) continue;
+    if (Cached* cached = known(rotation, Look::first, default_reuse_angle_rad)) {
+      cached->look = look;
+      begun.push_back(cached);
+    } else {
+      untouched.push_back(&cache_.emplace_back(rotation, look));
+    }
   }
-  if (cache_.size() == before) return;
-  std::vector<Eigen::Matrix3d> frames;
-  // The target's axes, seen in the source: the columns of R^T.
-  for (std::size_t i = before; i < cache_.size(); ++i) frames.push_back(cache_[i].rotation.transpose());
-  std::vector<std::vector<Descriptor>> found =
-      describe_in_frames(source_supports(), frames, descriptor_radius_, threads_);
-  for (std::size_t i = 0; i < found.size(); ++i) cache_[before + i].descriptors = std::move(found[i]);
+  const auto add = [&](std::span<Cached* const> all, const EveryNth& chosen) {
+    if (all.empty()) return;
+    std::vector<Eigen::Matrix3d> frames;
+    std::vector<std::vector<Descriptor>*> descriptors;
+    for (Cached* cached : all) {
+      frames.push_back(cached->rotation.transpose());  // the target's axes, seen in the source: the columns of R^T
+      descriptors.push_back(&cached->descriptors);
+    }
+    describe_in_frames(source_supports(), chosen, frames, descriptor_radius_, threads_, descriptors);
+  };
+  add(untouched, {look == Look::first ? first_look_step() : 1, 0});
+  add(begun, {1, first_look_step()});
 }
 
-std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d& target_from_source, int threads) {
-  const auto& source = frame.source_descriptors(target_from_source);
+std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d& target_from_source, int threads,
+                                      Look look) {
+  const auto& all = frame.source_descriptors(target_from_source, look);
+  const std::size_t step = look == Look::first ? frame.first_look_step() : 1;
+  std::vector<Descriptor> some;
+  if (look == Look::first) {
+    for (std::size_t i = 0; i < all.size(); i += step) some.push_back(all[i]);
+  }
+  const auto& source = look == Look::first ? some : all;
   const auto& target = frame.target_descriptors();
   const std::size_t m = source.size(), n = target.size();
   if (m == 0 || n == 0) return {};
@@ -132,7 +161,8 @@ std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d&
   std::vector<PointPair> matches;
   for (std::size_t i = 0; i < m; ++i) {
     const Nearest j = index_of(of_source[i]);
-    if (index_of(of_target[j]) == i) matches.push_back({frame.source().keypoints[i], frame.target().keypoints[j]});
+    if (index_of(of_target[j]) == i)
+      matches.push_back({frame.source().keypoints[i * step], frame.target().keypoints[j]});
   }
   return matches;
 }
@@ -158,9 +188,9 @@ Rematch not_moved(const Transformation& hypothesis, std::vector<PointPair> match
 
 }  // namespace
 
-Rematch rematch(CommonFrame& frame, const Transformation& hypothesis, int degrees_of_freedom, int threads) {
+Rematch rematch(CommonFrame& frame, const Transformation& hypothesis, int degrees_of_freedom, int threads, Look look) {
   const double voxel_size = frame.target().features.voxel_size;
-  Rematch best = not_moved(hypothesis, mutual_matches(frame, hypothesis.linear(), threads), voxel_size);
+  Rematch best = not_moved(hypothesis, mutual_matches(frame, hypothesis.linear(), threads, look), voxel_size);
   if (best.matches.empty()) return best;
   for (const double radius : mode_radii) {
     Transformation start = hypothesis;

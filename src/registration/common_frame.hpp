@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <deque>
 #include <optional>
 #include <span>
@@ -12,6 +13,9 @@
 
 namespace igsp {
 
+/// At which of the source's keypoints: at a first look at 45 to 90 of them, evenly chosen.
+enum class Look { first, whole };
+
 /// Descriptors of both clouds' keypoints in ONE frame, the target's axes: given a hypothesis of the rotation, no local
 /// reference frame is left that could fail to repeat. Descriptors of the target are computed once, where they are first
 /// asked for, those of the source are kept with their rotation and reused within 2 degrees. Several threads may use
@@ -20,10 +24,14 @@ class CommonFrame {
  public:
   CommonFrame(const PreparedCloud& source, const PreparedCloud& target, double descriptor_radius, int threads);
 
-  /// What rotations will be asked for.
-  void describe(std::span<const Transformation> target_from_source);
+  /// What rotations will be asked for, of which of the source's keypoints, and what angle off will do.
+  void describe(std::span<const Transformation> target_from_source, Look look = Look::whole,
+                double reuse_angle_rad = default_reuse_angle_rad);
   const std::vector<Descriptor>& target_descriptors();
-  const std::vector<Descriptor>& source_descriptors(const Eigen::Matrix3d& target_from_source);
+  /// After a first look only those of every `first_look_step` are defined.
+  const std::vector<Descriptor>& source_descriptors(const Eigen::Matrix3d& target_from_source, Look look = Look::whole,
+                                                    double reuse_angle_rad = default_reuse_angle_rad);
+  std::size_t first_look_step() const;  ///< 1: there are so few keypoints that all are looked at
 
   const PreparedCloud& source() const { return source_; }
   const PreparedCloud& target() const { return target_; }
@@ -31,13 +39,16 @@ class CommonFrame {
   int threads() const { return threads_; }
 
  private:
+  static constexpr double default_reuse_angle_rad = 2.0 * M_PI / 180.0;
+
   struct Cached {
     Eigen::Matrix3d rotation;
+    Look look;  // what is described of it
     std::vector<Descriptor> descriptors;
   };
-  const std::vector<Descriptor>* known(const Eigen::Matrix3d& target_from_source) const;
+  Cached* known(const Eigen::Matrix3d& target_from_source, Look look, double reuse_angle_rad);
   const SupportTable& source_supports();
-  void describe_source(std::span<const Eigen::Matrix3d> target_from_source);
+  void describe_source(std::span<const Eigen::Matrix3d> target_from_source, Look look, double reuse_angle_rad);
 
   const PreparedCloud& source_;
   const PreparedCloud& target_;
@@ -49,7 +60,8 @@ class CommonFrame {
 };
 
 /// Mutual nearest neighbours by feature distance in the common frame of a rotation.
-std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d& target_from_source, int threads);
+std::vector<PointPair> mutual_matches(CommonFrame& frame, const Eigen::Matrix3d& target_from_source, int threads,
+                                      Look look = Look::whole);
 
 /// A hypothesis after matching again in its common frame.
 struct Rematch {
@@ -60,7 +72,8 @@ struct Rematch {
 };
 
 /// Matches again, votes for the translation (mode of b - R a) and fits robustly; keeps the better of both poses.
-Rematch rematch(CommonFrame& frame, const Transformation& hypothesis, int degrees_of_freedom, int threads);
+Rematch rematch(CommonFrame& frame, const Transformation& hypothesis, int degrees_of_freedom, int threads,
+                Look look = Look::whole);
 
 /// With the same matches, but fitted where the hypothesis is: among like rooms the vote may go to another one.
 Rematch fit_in_place(const CommonFrame& frame, const Transformation& hypothesis, std::vector<PointPair> matches,

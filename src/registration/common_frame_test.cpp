@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "estimation/robust_fit.hpp"
 #include "features/bsc.hpp"
 #include "registration/frame_testing.hpp"
 
@@ -47,6 +48,34 @@ TEST(CommonFrame, ReusesDescriptorsWithinTwoDegrees) {
   const std::vector<Descriptor> first = frame.source_descriptors(turned(0));
   EXPECT_EQ(frame.source_descriptors(turned(1.9)), first);
   EXPECT_NE(frame.source_descriptors(turned(2.1)), first);
+  EXPECT_EQ(frame.source_descriptors(turned(-5.9), Look::whole, 6 * M_PI / 180), first) << "where that angle will do";
+  EXPECT_NE(frame.source_descriptors(turned(-5.9)), first);
+  EXPECT_NE(frame.source_descriptors(turned(-4.5), Look::whole, 6 * M_PI / 180), first) << "the nearest one";
+}
+
+TEST(CommonFrame, AFirstLookIsPartOfTheWholeOne) {
+  const Scene scene(2);
+  CommonFrame at_once = scene.frame(), frame = scene.frame();
+  const Eigen::Matrix3d rotation = scene.truth.linear();
+  const std::vector<Descriptor> whole = at_once.source_descriptors(rotation);
+  const std::vector<Descriptor> some = frame.source_descriptors(rotation, Look::first);
+  const std::size_t step = frame.first_look_step();
+  ASSERT_GT(step, 1u);
+  EXPECT_GE(whole.size() / step, 45u);
+  EXPECT_LE(whole.size() / step, 90u);
+  for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_EQ(some[i], i % step == 0 ? whole[i] : Descriptor{}) << i;
+  EXPECT_EQ(frame.source_descriptors(rotation), whole);
+  EXPECT_EQ(frame.source_descriptors(rotation, Look::first), whole) << "what is known stays";
+}
+
+TEST(CommonFrame, FewKeypointsAreAllLookedAtFirst) {
+  const Scene scene(2, {.half_side = 1.5});
+  CommonFrame frame = scene.frame(), other = scene.frame();
+  ASSERT_LT(scene.source.keypoints.size(), 90u);
+  EXPECT_EQ(frame.first_look_step(), 1u);
+  EXPECT_EQ(frame.source_descriptors(scene.truth.linear(), Look::first),
+            other.source_descriptors(scene.truth.linear()));
+  EXPECT_EQ(frame.source_descriptors(scene.truth.linear()), other.source_descriptors(scene.truth.linear()));
 }
 
 TEST(MutualMatches, AreNearestToEachOther) {
@@ -76,6 +105,21 @@ TEST(MutualMatches, AreNearestToEachOther) {
   for (const int threads : {2, 4}) {
     CommonFrame other = scene.frame(threads);
     EXPECT_EQ(mutual_matches(other, scene.truth.linear(), threads).size(), matches.size());
+  }
+}
+
+TEST(MutualMatches, OfAFirstLookAreThoseOfEveryFewKeypoints) {
+  const Scene scene(3);
+  CommonFrame frame = scene.frame();
+  const auto matches = mutual_matches(frame, scene.truth.linear(), 1, Look::first);
+  const std::size_t step = frame.first_look_step();
+  ASSERT_GT(matches.size(), 10u);
+  EXPECT_GT(count_inliers(matches, scene.truth, 0.25), matches.size() / 2);
+  for (const PointPair& match : matches) {
+    const auto& keypoints = scene.prepared_source.keypoints;
+    const auto place = std::ranges::find(keypoints, match.source);
+    ASSERT_NE(place, keypoints.end());
+    EXPECT_EQ(static_cast<std::size_t>(place - keypoints.begin()) % step, 0u);
   }
 }
 

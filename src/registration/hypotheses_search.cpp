@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <iterator>
 #include <limits>
 
 #include "registration/each_pose.hpp"
@@ -21,6 +23,7 @@ constexpr int first_hybrid_k = 4;
 constexpr double hybrid_fit_scale = 1.5;  // voxels
 
 constexpr int first_iterations = 3;
+constexpr double near_enough_rad = 6.0 * M_PI / 180.0;  // for these
 constexpr int last_iterations = 20;
 
 constexpr std::array<double, 6> coarse_radii{3, 3, 2, 2, 1.5, 1.5};
@@ -47,6 +50,7 @@ constexpr std::size_t carried = 3;       // from a rung to the next
 // than these, and one right object of 1,000 simulated pairs. Now that those that hardly anything agrees with are not,
 // half a decade less.
 constexpr double hopeless_quality = -2.5;
+constexpr double hopeful_quality = -1;       // of a pose: what a first look put off may be its rival, or better
 constexpr std::size_t enough_voxels = 1500;  // of either cloud, for a pose to show a little of what it is worth
 
 // Where both scanners are known free space and the sides of surfaces tell right from wrong among more poses.
@@ -78,14 +82,14 @@ bool repeats_one_of(std::span<const Posed> others, const Transformation& pose, d
 // The first `limit` that repeat neither an earlier one nor what is ranked already: matching again draws proposals
 // together, and six times the same pose would leave no room for the others. Of those that too little agrees with one at
 // most, so that there is an answer.
-std::vector<Rematch> distinct(std::vector<Rematch> sorted, std::span<const Rival> ranked, double voxel_size,
+std::vector<Rematch> distinct(std::span<const Rematch> sorted, std::span<const Rival> ranked, double voxel_size,
                               int limit) {
   std::vector<Rematch> kept;
-  for (Rematch& match : sorted) {
+  for (const Rematch& match : sorted) {
     if (match.agreeing < fewest_agreeing && !(ranked.empty() && kept.empty())) continue;
     if (!repeats_one_of(ranked, match.target_from_source, voxel_size) &&
         !repeats_one_of(std::span<const Rematch>(kept), match.target_from_source, voxel_size)) {
-      kept.push_back(std::move(match));
+      kept.push_back(match);
     }
     if (kept.size() == static_cast<std::size_t>(limit)) break;
   }
@@ -98,11 +102,12 @@ Options in_one_thread(Options options) {
   return options;
 }
 
-LoopOutcome hybrid_loop(CommonFrame& frame, const Transformation& initial, int iterations, const Options& options,
+// With descriptors of the source in axes near those of the initial pose.
+LoopOutcome hybrid_loop(CommonFrame& frame, const std::vector<Descriptor>& source_descriptors,
+                        const Transformation& initial, int iterations, const Options& options,
                         const std::function<void(int)>& tick = {}) {
-  const LoopInput input{
-      frame.source().keypoints,   frame.target().keypoints,          frame.source_descriptors(initial.linear()), 1,
-      frame.target_descriptors(), frame.target().features.voxel_size};
+  const LoopInput input{frame.source().keypoints,   frame.target().keypoints,          source_descriptors, 1,
+                        frame.target_descriptors(), frame.target().features.voxel_size};
   return igsp_loop(input, initial, {first_hybrid_k, iterations, hybrid_fit_scale, common_frame_bounds}, options, tick);
 }
 
@@ -127,7 +132,8 @@ void finish(ScaleLadder& scales, const Options& options, StageClock& clock, Sear
   CommonFrame& frame = scales.frame(outcome.rung);
   clock.start("loop");
   const int iterations = std::min(last_iterations, options.convergence.max_iterations);
-  LoopOutcome loop = hybrid_loop(frame, outcome.target_from_source, iterations, options,
+  LoopOutcome loop = hybrid_loop(frame, frame.source_descriptors(outcome.target_from_source.linear()),
+                                 outcome.target_from_source, iterations, options,
                                  [&](int iteration) { clock.report(static_cast<double>(iteration) / iterations); });
   outcome.termination = loop.termination;
   outcome.iterations = std::move(loop.iterations);
@@ -143,12 +149,16 @@ std::vector<Rival> rank(ScaleLadder& scales, std::size_t rung, std::span<const T
   const Surface source = surface_of(frame.source()), target = surface_of(frame.target());
   const double v = frame.target().features.voxel_size;
   const Options alone = in_one_thread(options);
+  // Fitted again, a proposal turns by a few degrees; the loop's first iterations do without new descriptors for that.
+  frame.describe(candidates, Look::whole, near_enough_rad);
   const std::vector<Transformation> poses =
-      look_into_each<Transformation>(frame, candidates, [&](const Transformation& candidate) {
-        const LoopOutcome loop = hybrid_loop(frame, candidate, first_iterations, alone);
+      for_each_pose<Transformation>(frame, candidates, [&](const Transformation& candidate) {
+        const auto& descriptors = frame.source_descriptors(candidate.linear(), Look::whole, near_enough_rad);
+        const LoopOutcome loop = hybrid_loop(frame, descriptors, candidate, first_iterations, alone);
         return settle(source, target, loop.target_from_source, v, alone);
       });
-  std::vector<Rival> ranked = look_into_each<Rival>(frame, poses, [&](const Transformation& pose) {
+  frame.describe(poses);
+  std::vector<Rival> ranked = for_each_pose<Rival>(frame, poses, [&](const Transformation& pose) {
     return Rival{pose, assess_pose(scales, rung, pose, 1)};
   });
   sort_by_quality(ranked);
@@ -171,6 +181,11 @@ FreeSpaceQuestion question_of_free_space(ScaleLadder& scales) {
   return [&](const Transformation& pose) { return scales.space().at(pose, screening_looks); };
 }
 
+// What contradicts the poses that were found says nothing of those that were not.
+double quality_without_free_space(const Rival& pose) {
+  return pose.assessment.quality - pose.assessment.free_space_evidence;
+}
+
 // Proposes, screens and ranks; together with the best that another scale found.
 std::vector<Rival> search_at(ScaleLadder& scales, std::size_t rung, std::span<const Rival> found, Options options,
                              StageClock& clock) {
@@ -179,17 +194,38 @@ std::vector<Rival> search_at(ScaleLadder& scales, std::size_t rung, std::span<co
   found = found.first(std::min(found.size(), carried));
   clock.start("hypotheses");
   const std::vector<Hypothesis> hypotheses = propose(frame, options);
+  const FreeSpaceQuestion ask_free_space = question_of_free_space(scales);
+  Screening screening(frame, hypotheses, options, ask_free_space);
+  std::vector<Rematch> screened;
+  std::vector<Transformation> tried;
+  std::vector<Rival> ranked;
+  const auto add_best_of = [&](std::vector<Rematch> matched) {
+    if (ask_free_space)
+      for (const Rematch& pose : matched) scales.space().note_proposal(pose.free_space);
+    std::ranges::move(matched, std::back_inserter(screened));
+    std::ranges::stable_sort(screened, std::greater(), promise_of);
+    clock.start("ranking");
+    std::vector<Transformation> candidates;
+    if (tried.empty())
+      for (const Rival& pose : found) candidates.push_back(pose.target_from_source);
+    for (const Rematch& pose : distinct(screened, found, scales.voxel_size(rung), options.hypotheses.max_refined)) {
+      const auto is_this = [&](const Transformation& other) {
+        return other.matrix() == pose.target_from_source.matrix();
+      };
+      if (std::ranges::none_of(tried, is_this)) candidates.push_back(pose.target_from_source);
+    }
+    std::ranges::copy(candidates, std::back_inserter(tried));
+    std::ranges::move(rank(scales, rung, candidates, options), std::back_inserter(ranked));
+    sort_by_quality(ranked);
+  };
   clock.start("screening");
-  std::vector<Rematch> screened =
-      screen(frame, hypotheses, options, question_of_free_space(scales), [&](double share) { clock.report(share); });
-  if (scales.space().is_known())
-    for (const Rematch& pose : screened) scales.space().note_proposal(pose.free_space);
-  screened = distinct(std::move(screened), found, scales.voxel_size(rung), options.hypotheses.max_refined);
-  clock.start("ranking");
-  std::vector<Transformation> candidates;
-  for (const Rival& pose : found) candidates.push_back(pose.target_from_source);
-  for (const Rematch& pose : screened) candidates.push_back(pose.target_from_source);
-  return rank(scales, rung, candidates, options);
+  add_best_of(screening.most_promising([&](double share) { clock.report(share); }));
+  const auto is_hopeful = [](const Rival& pose) { return quality_without_free_space(pose) >= hopeful_quality; };
+  if (screening.has_put_off() && std::ranges::any_of(ranked, is_hopeful)) {
+    clock.start("screening");
+    add_best_of(screening.put_off());
+  }
+  return ranked;
 }
 
 // What the finer rungs say against the best pose of this one: they see what it cannot, not the other way round.
@@ -254,9 +290,7 @@ SearchOutcome hypotheses_search(ScaleLadder& scales, const Options& options, Sta
     CommonFrame& frame = scales.frame(rung);
     outcome.ranked[rung] = search_at(scales, rung, found, options, clock);
     found = outcome.ranked[rung];
-    // What contradicts the poses that were found says nothing of those that were not.
-    for (const Rival& pose : found)
-      quality = std::max(quality, pose.assessment.quality - pose.assessment.free_space_evidence);
+    for (const Rival& pose : found) quality = std::max(quality, quality_without_free_space(pose));
     outcome.finest_rung = rung;
     const bool is_hopeless = can_tell(rung, frame) && quality < hopeless_quality;
     if (is_hopeless || (options.refinement.enabled && is_settled(found, scales.voxel_size(rung)))) break;

@@ -12,10 +12,34 @@ namespace igsp {
 /// Is the space empty that the scanners saw through, if a pose is right? Not given where no viewpoint is known.
 using FreeSpaceQuestion = std::function<FreeSpace(const Transformation&)>;
 
-/// Matches proposals again in their common frame, those with most agreeing matches first, in the light of free space
-/// where that is known. A clear winner spares the others, except those with half of its inliers, which would be the
-/// other poses of a symmetric scene. `tick`: the share that is done.
-std::vector<Rematch> screen(CommonFrame& frame, std::span<const Hypothesis> hypotheses, const Options& options,
-                            const FreeSpaceQuestion& ask_free_space, const std::function<void(double)>& tick);
+/// What the quality of a pose has of its matches and of free space, in decades.
+double promise_of(const Rematch& match);
+
+/// Matches proposals again in their common frame, in the light of free space where that is known. A clear winner spares
+/// the others, except those with half of its inliers, which would be the other poses of a symmetric scene. Where the
+/// first three have no winner, the others are looked at with a quarter of the keypoints, and only the best quarter of
+/// them is matched again before it is asked whether there is any hope.
+class Screening {
+ public:
+  /// Refers to all of them. `hypotheses`: those with most inliers first.
+  Screening(CommonFrame& frame, std::span<const Hypothesis> hypotheses, const Options& options,
+            const FreeSpaceQuestion& ask_free_space);
+
+  /// Called first, once. `tick`: the share that is done.
+  std::vector<Rematch> most_promising(const std::function<void(double)>& tick);
+  bool has_put_off() const { return !put_off_.empty(); }
+  std::vector<Rematch> put_off();  ///< which the first look put off
+
+ private:
+  std::vector<Rematch> matched_again(std::span<const Hypothesis> batch);
+  std::vector<Hypothesis> best_at_first_look(std::span<const Hypothesis> others);
+
+  CommonFrame& frame_;
+  std::span<const Hypothesis> hypotheses_;
+  int degrees_of_freedom_;
+  const FreeSpaceQuestion& ask_free_space_;
+  std::size_t winner_inliers_ = 0;
+  std::vector<Hypothesis> put_off_;
+};
 
 }  // namespace igsp

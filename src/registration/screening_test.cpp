@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+#include <iterator>
+
 #include "registration/frame_testing.hpp"
 
 namespace igsp {
@@ -26,6 +30,18 @@ std::vector<Hypothesis> proposals(const Scene& scene, std::size_t place, std::si
   return hypotheses;
 }
 
+/// All that is matched again, whether or not it was put off.
+std::vector<Rematch> screen(CommonFrame& frame, const std::vector<Hypothesis>& hypotheses,
+                            const FreeSpaceQuestion& ask_free_space) {
+  const Options options;
+  Screening screening(frame, hypotheses, options, ask_free_space);
+  std::vector<Rematch> screened = screening.most_promising(silent);
+  std::ranges::move(screening.put_off(), std::back_inserter(screened));
+  EXPECT_FALSE(screening.has_put_off());
+  std::ranges::stable_sort(screened, std::greater(), promise_of);
+  return screened;
+}
+
 bool is_right(const Scene& scene, const Rematch& match) {
   return (match.target_from_source.linear() - scene.truth.linear()).norm() < 0.05;
 }
@@ -33,17 +49,56 @@ bool is_right(const Scene& scene, const Rematch& match) {
 TEST(Screening, FindsTheRightOneOfManyWithMoreInliers) {
   const Scene scene(3);
   CommonFrame frame = scene.frame();
-  const std::vector<Rematch> screened = screen(frame, proposals(scene, 20, 3, 10), Options(), {}, silent);
+  const std::vector<Rematch> screened = screen(frame, proposals(scene, 20, 3, 10), {});
   EXPECT_TRUE(is_right(scene, screened.front()));
-  EXPECT_EQ(screened.size(), proposed);
   EXPECT_TRUE(std::ranges::is_sorted(screened, std::greater(), &Rematch::agreeing));
+}
+
+TEST(Screening, AFirstLookFindsTheBestQuarterOfThoseAfterTheFirstThree) {
+  const Scene scene(3);
+  const Options options;
+  for (const std::size_t place : {3u, 12u, 23u}) {
+    CommonFrame frame = scene.frame();
+    const std::vector<Hypothesis> hypotheses = proposals(scene, place, 25, 10);
+    const FreeSpaceQuestion unknown;
+    Screening screening(frame, hypotheses, options, unknown);
+    const std::vector<Rematch> promising = screening.most_promising(silent);
+    EXPECT_EQ(promising.size(), 3u + 21 / 4);
+    EXPECT_EQ(std::ranges::count_if(promising, [&](const Rematch& match) { return is_right(scene, match); }), 1);
+    EXPECT_TRUE(screening.has_put_off());
+    EXPECT_EQ(screening.put_off().size(), 0u) << "a clear winner of more inliers needs no rivals";
+  }
+}
+
+TEST(Screening, WhatAFirstLookPutsOffIsMatchedAgainLater) {
+  const Scene scene(3);
+  CommonFrame frame = scene.frame();
+  const Options options;
+  std::vector<Hypothesis> wrong = proposals(scene, 0, 3, 10);
+  wrong.erase(wrong.begin());
+  const FreeSpaceQuestion unknown;
+  Screening screening(frame, wrong, options, unknown);
+  EXPECT_EQ(screening.most_promising(silent).size(), 3u + 20 / 4);
+  EXPECT_EQ(screening.put_off().size(), 15u);
+  EXPECT_FALSE(screening.has_put_off());
+}
+
+TEST(Screening, NothingIsPutOffWhereKeypointsAreFew) {
+  const Scene scene(3, {.half_side = 1.5});
+  CommonFrame frame = scene.frame();
+  const Options options;
+  const std::vector<Hypothesis> hypotheses = proposals(scene, 20, 3, 10);
+  const FreeSpaceQuestion unknown;
+  Screening screening(frame, hypotheses, options, unknown);
+  EXPECT_EQ(screening.most_promising(silent).size(), proposed);
+  EXPECT_FALSE(screening.has_put_off());
 }
 
 TEST(Screening, AClearWinnerSparesAllThatCannotBeItsRivals) {
   const Scene scene(4);
   CommonFrame frame = scene.frame(), other = scene.frame();
-  EXPECT_EQ(screen(frame, proposals(scene, 0, 20, 9), Options(), {}, silent).size(), 1u);
-  EXPECT_EQ(screen(other, proposals(scene, 0, 20, 10), Options(), {}, silent).size(), proposed);
+  EXPECT_EQ(screen(frame, proposals(scene, 0, 20, 9), {}).size(), 1u);
+  EXPECT_EQ(screen(other, proposals(scene, 0, 20, 10), {}).size(), proposed);
 }
 
 TEST(Screening, TheStrongestOfSeveralClearWinnersDecides) {
@@ -51,7 +106,7 @@ TEST(Screening, TheStrongestOfSeveralClearWinnersDecides) {
   CommonFrame frame = scene.frame();
   std::vector<Hypothesis> hypotheses = proposals(scene, 0, 20, 7);
   hypotheses[1] = {scene.truth, 12};
-  EXPECT_EQ(screen(frame, hypotheses, Options(), {}, silent).size(), 2u);
+  EXPECT_EQ(screen(frame, hypotheses, {}).size(), 2u);
 }
 
 TEST(Screening, WhatFreeSpaceContradictsIsNoClearWinnerAndComesLater) {
@@ -63,12 +118,12 @@ TEST(Screening, WhatFreeSpaceContradictsIsNoClearWinnerAndComesLater) {
   const FreeSpace empty{FreeSpaceViolation{1000, 0}, std::nullopt}, filled{FreeSpaceViolation{1000, 200}, std::nullopt};
   const auto against = [&](const Transformation& pose) { return is_the_right_one(pose) ? filled : empty; };
   const auto against_others = [&](const Transformation& pose) { return is_the_right_one(pose) ? empty : filled; };
-  const std::vector<Rematch> screened = screen(frame, proposals(scene, 0, 20, 9), Options(), against, silent);
+  const std::vector<Rematch> screened = screen(frame, proposals(scene, 0, 20, 9), against);
   EXPECT_EQ(screened.size(), proposed);
   const auto place = std::ranges::find_if(screened, is_the_right_one, &Rematch::target_from_source);
   ASSERT_NE(place, screened.end());
   EXPECT_EQ(place->free_space.source->contradicting, 200u);
-  EXPECT_EQ(screen(other, proposals(scene, 0, 20, 9), Options(), against_others, silent).size(), 1u);
+  EXPECT_EQ(screen(other, proposals(scene, 0, 20, 9), against_others).size(), 1u);
 }
 
 TEST(Screening, AHypothesisStaysWhereFreeSpaceContradictsTheVote) {
@@ -81,16 +136,16 @@ TEST(Screening, AHypothesisStaysWhereFreeSpaceContradictsTheVote) {
     return (pose.translation() - scene.truth.translation()).norm() < 1 ? filled : empty;
   };
   const std::vector<Hypothesis> hypotheses{{beside, 10}};
-  const Rematch found = screen(frame, hypotheses, Options(), against_the_truth, silent).front();
+  const Rematch found = screen(frame, hypotheses, against_the_truth).front();
   EXPECT_GT((found.target_from_source.translation() - scene.truth.translation()).norm(), 2);
-  const Rematch by_vote = screen(frame, hypotheses, Options(), {}, silent).front();
+  const Rematch by_vote = screen(frame, hypotheses, {}).front();
   EXPECT_LT((by_vote.target_from_source.translation() - scene.truth.translation()).norm(), 0.3);
 }
 
 TEST(Screening, FewMatchesAreNoClearWinnerHoweverManyOfThemAgree) {
   const Scene scene(4, {.half_side = 0.6});
   CommonFrame frame = scene.frame();
-  const std::vector<Rematch> screened = screen(frame, proposals(scene, 0, 20, 9), Options(), {}, silent);
+  const std::vector<Rematch> screened = screen(frame, proposals(scene, 0, 20, 9), {});
   EXPECT_EQ(screened.size(), proposed);
   const Rematch& best = screened.front();
   EXPECT_TRUE(best.agreeing > 5 && best.agreeing < 15 && best.agreeing >= 0.7 * best.matches.size())
@@ -100,7 +155,7 @@ TEST(Screening, FewMatchesAreNoClearWinnerHoweverManyOfThemAgree) {
 TEST(Screening, ManyMatchesAreNoClearWinnerWhereFewOfThemAgree) {
   const Scene scene(4, {.half_side = 4, .common = 2});
   CommonFrame frame = scene.frame();
-  const std::vector<Rematch> screened = screen(frame, proposals(scene, 0, 20, 9), Options(), {}, silent);
+  const std::vector<Rematch> screened = screen(frame, proposals(scene, 0, 20, 9), {});
   EXPECT_EQ(screened.size(), proposed);
   const Rematch& best = screened.front();
   EXPECT_TRUE(is_right(scene, best));
