@@ -126,7 +126,8 @@ void CommonFrame::describe_source(std::span<const Eigen::Matrix3d> target_from_s
       cached->look = look;
       begun.push_back(cached);
     } else {
-      untouched.push_back(&cache_.emplace_back(rotation, look));
+      cache_.push_back({rotation, look, {}});
+      untouched.push_back(&cache_.back());
     }
   }
   const auto add = [&](std::span<Cached* const> all, const EveryNth& chosen) {
