@@ -67,12 +67,12 @@ Screening::Screening(CommonFrame& frame, std::span<const Hypothesis> hypotheses,
       degrees_of_freedom_(options.degrees_of_freedom),
       ask_free_space_(ask_free_space) {}
 
-std::vector<Rematch> Screening::matched_again(std::span<const Hypothesis> batch) {
+std::vector<Rematch> Screening::match(std::span<const Hypothesis> batch) {
   std::vector<Hypothesis> rivals;
   std::ranges::copy_if(batch, std::back_inserter(rivals), [&](const Hypothesis& hypothesis) {
     return static_cast<double>(hypothesis.inliers) >= rival_inliers * static_cast<double>(winner_inliers_);
   });
-  std::vector<Rematch> found = igsp::matched_again(frame_, rivals, degrees_of_freedom_, ask_free_space_, Look::whole);
+  std::vector<Rematch> found = matched_again(frame_, rivals, degrees_of_freedom_, ask_free_space_, Look::whole);
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (is_clear(found[i])) winner_inliers_ = std::max(winner_inliers_, rivals[i].inliers);
   }
@@ -80,8 +80,7 @@ std::vector<Rematch> Screening::matched_again(std::span<const Hypothesis> batch)
 }
 
 std::vector<Hypothesis> Screening::best_at_first_look(std::span<const Hypothesis> others) {
-  const std::vector<Rematch> seen =
-      igsp::matched_again(frame_, others, degrees_of_freedom_, ask_free_space_, Look::first);
+  const std::vector<Rematch> seen = matched_again(frame_, others, degrees_of_freedom_, ask_free_space_, Look::first);
   std::vector<std::size_t> order(others.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return promise_of(seen[i]); });
@@ -95,7 +94,7 @@ std::vector<Hypothesis> Screening::best_at_first_look(std::span<const Hypothesis
 std::vector<Rematch> Screening::most_promising(const std::function<void(double)>& tick) {
   std::vector<Rematch> matched;
   const auto add = [&](std::span<const Hypothesis> batch) {
-    std::ranges::move(matched_again(batch), std::back_inserter(matched));
+    std::ranges::move(match(batch), std::back_inserter(matched));
   };
   // In batches that grow, for the winner is mostly among the first.
   for (std::size_t begin = 0, size = 1; begin < hypotheses_.size(); begin += size, size *= 2) {
@@ -110,7 +109,7 @@ std::vector<Rematch> Screening::most_promising(const std::function<void(double)>
 }
 
 std::vector<Rematch> Screening::put_off() {
-  return matched_again(std::exchange(put_off_, {}));
+  return match(std::exchange(put_off_, {}));
 }
 
 }  // namespace igsp

@@ -17,21 +17,21 @@ double promise_of(const Rematch& match);
 
 /// Matches proposals again in their common frame, in the light of free space where that is known. A clear winner spares
 /// the others, except those with half of its inliers, which would be the other poses of a symmetric scene. Where the
-/// first three have no winner, the others are looked at with a quarter of the keypoints, and only the best quarter of
-/// them is matched again before it is asked whether there is any hope.
+/// first three have no winner, the others get a first look, and only the best quarter of them is matched again before
+/// it is asked whether there is any hope.
 class Screening {
  public:
-  /// Refers to all of them. `hypotheses`: those with most inliers first.
+  /// Refers to all of them.
   Screening(CommonFrame& frame, std::span<const Hypothesis> hypotheses, const Options& options,
             const FreeSpaceQuestion& ask_free_space);
 
   /// Called first, once. `tick`: the share that is done.
   std::vector<Rematch> most_promising(const std::function<void(double)>& tick);
   bool has_put_off() const { return !put_off_.empty(); }
-  std::vector<Rematch> put_off();  ///< which the first look put off
+  std::vector<Rematch> put_off();  ///< called at most once: what the first look put off, matched again
 
  private:
-  std::vector<Rematch> matched_again(std::span<const Hypothesis> batch);
+  std::vector<Rematch> match(std::span<const Hypothesis> batch);
   std::vector<Hypothesis> best_at_first_look(std::span<const Hypothesis> others);
 
   CommonFrame& frame_;

@@ -51,6 +51,7 @@ TEST(Screening, FindsTheRightOneOfManyWithMoreInliers) {
   CommonFrame frame = scene.frame();
   const std::vector<Rematch> screened = screen(frame, proposals(scene, 20, 3, 10), {});
   EXPECT_TRUE(is_right(scene, screened.front()));
+  EXPECT_EQ(screened.size(), proposed);
   EXPECT_TRUE(std::ranges::is_sorted(screened, std::greater(), &Rematch::agreeing));
 }
 
