@@ -29,6 +29,10 @@ double quality_of(const PoseAssessment& pose) {
 // pose of a third. Right ones of that overlap have more of both.
 constexpr double undemanding_overlap = 0.4, demanding_overlap = 0.7, decades_per_overlap = 3.0;
 
+// Large voxels show little but walls and ground. Where a few features agree there, and finer voxels do not carry the
+// answer, as many poses are wrong as right.
+constexpr double few_agreeing = 10, enough_agreeing = 13, decades_for_few = 1.0;
+
 // Free space confirms what contact and matches say, not in place of them: that is little on large voxels, nothing for
 // the first number of them and all for the second, and where surfaces cross. Whatever was registered before it weighed
 // so much touched at 0.8 and more (docs/decisions, 15).
@@ -58,9 +62,15 @@ double PoseAssessment::share_of_expected() const {
   return share / (expected_agreement * std::max(overlap(), 0.02));
 }
 
+double demanded_quality(const PoseAssessment& pose, std::size_t rung) {
+  const double for_overlap =
+      decades_per_overlap * (std::clamp(pose.overlap(), undemanding_overlap, demanding_overlap) - undemanding_overlap);
+  if (rung == 0) return for_overlap;
+  const double agreeing = std::clamp(static_cast<double>(pose.agreeing_matches), few_agreeing, enough_agreeing);
+  return for_overlap + decades_for_few * (enough_agreeing - agreeing) / (enough_agreeing - few_agreeing);
+}
+
 double PoseAssessment::chance_odds() const {
-  const double demanded =
-      decades_per_overlap * (std::clamp(overlap(), undemanding_overlap, demanding_overlap) - undemanding_overlap);
   return std::pow(10.0, demanded - quality);
 }
 
@@ -82,6 +92,7 @@ PoseAssessment assess_pose(ScaleLadder& scales, std::size_t rung, const Transfor
   assessment.free_space_evidence =
       scales.space().evidence(assessment.free_space, weight_of_free_space(assessment, frame));
   assessment.quality = quality_of(assessment) + assessment.free_space_evidence;
+  assessment.demanded = demanded_quality(assessment, rung);
   return assessment;
 }
 

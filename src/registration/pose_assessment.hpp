@@ -18,6 +18,7 @@ struct PoseAssessment {
   FreeSpace free_space;              ///< is empty what the other scanner saw through?
   double free_space_evidence = 0;    ///< of that, F of docs/verdict.md
   double quality = 0;                ///< Q, docs/method.md
+  double demanded = 0;               ///< of that, for even odds [decades]
   /// Share of the mutual matches that agree, in terms of what right poses of such an overlap have at least.
   double share_of_expected() const;
   double contact() const;  ///< share, geometric mean of both directions
@@ -25,6 +26,10 @@ struct PoseAssessment {
   /// Odds that the pose is chance, against that it is right.
   double chance_odds() const;
 };
+
+/// Decades of quality that even odds take: more where much overlaps, and where few features agree above rung 0.
+double demanded_quality(const PoseAssessment& pose, std::size_t rung);
+
 /// On a rung of the ladder that is ready.
 PoseAssessment assess_pose(ScaleLadder& scales, std::size_t rung, const Transformation& target_from_source,
                            int threads);

@@ -19,13 +19,10 @@ struct SearchOutcome {
   std::vector<std::vector<Rival>> ranked;  ///< by rung, where that was searched: its poses, best first
   std::size_t rung = 0;                    ///< of the scale ladder, that answered
   std::size_t finest_rung = 0;             ///< that was searched
+  bool is_hopeful = true;                  ///< the answer; one that is not gets fewer points of the fine registration
   double contradiction = 0;                ///< odds against the answer of what finer rungs found, if they weigh; else 0
   Precision precision;                     ///< in the target's local coordinates
 };
-
-/// A pose that was found on a rung, down to the noise of the scanner on the finer voxels.
-Transformation refined(ScaleLadder& scales, std::size_t rung, const Transformation& target_from_source,
-                       const Options& options);
 
 /// The paper: Algorithm 1 from feature distance alone.
 SearchOutcome direct_search(const CommonFrame& frame, const Options& options, StageClock& clock);

@@ -5,6 +5,7 @@
 
 #include "core/parallel.hpp"
 #include "registration/pose_assessment.hpp"
+#include "registration/pose_refinement.hpp"
 #include "registration/precision.hpp"
 #include "registration/self_likeness.hpp"
 #include "registration/surface_contact.hpp"
