@@ -123,6 +123,8 @@ MUTANTS = [
     ("registration/surface_contact.cpp", "touching = 1.0;", "touching = 4.0;", "what touches"),
     ("registration/surface_contact.cpp", "touching_weight += weight;", "touching_weight += 1.0;", "weights of contact"),
     ("registration/surface_contact.cpp", "* n + 2) / (n + 4)", "* n) / n", "few places prove little"),
+    ("registration/pose_assessment.cpp", "if (rung == 0) return", "if (rung != 0) return", "few matches are little above v alone"),
+    ("registration/pose_assessment.cpp", "decades_for_few * (", "0.0 * (", "few matches on large voxels ask for more"),
     ("registration/pose_assessment.cpp", "std::pow(10.0, demanded - quality)", "std::pow(10.0, quality - demanded)", "sign of the quality"),
     ("registration/rivals.cpp", "1.0 / (1.0 + pose.chance_odds() + rival_odds)", "1.0 / (1.0 + pose.chance_odds())", "rivals"),
     ("registration/rivals.cpp", "odds < undecided ? 0 : odds", "0", "what a finer scale contradicts"),

@@ -31,7 +31,7 @@ constexpr double undemanding_overlap = 0.4, demanding_overlap = 0.7, decades_per
 
 // Large voxels show little but walls and ground. Where a few features agree there, and finer voxels do not carry the
 // answer, as many poses are wrong as right.
-constexpr double few_agreeing = 10, enough_agreeing = 13, decades_for_few = 1.0;
+constexpr double few_agreeing = 10, safe_agreeing = 13, decades_for_few = 1.0;
 
 // Free space confirms what contact and matches say, not in place of them: that is little on large voxels, nothing for
 // the first number of them and all for the second, and where surfaces cross. Whatever was registered before it weighed
@@ -66,8 +66,8 @@ double demanded_quality(const PoseAssessment& pose, std::size_t rung) {
   const double for_overlap =
       decades_per_overlap * (std::clamp(pose.overlap(), undemanding_overlap, demanding_overlap) - undemanding_overlap);
   if (rung == 0) return for_overlap;
-  const double agreeing = std::clamp(static_cast<double>(pose.agreeing_matches), few_agreeing, enough_agreeing);
-  return for_overlap + decades_for_few * (enough_agreeing - agreeing) / (enough_agreeing - few_agreeing);
+  const double agreeing = std::clamp(static_cast<double>(pose.agreeing_matches), few_agreeing, safe_agreeing);
+  return for_overlap + decades_for_few * (safe_agreeing - agreeing) / (safe_agreeing - few_agreeing);
 }
 
 double PoseAssessment::chance_odds() const {
