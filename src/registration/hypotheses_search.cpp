@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 #include "registration/one_scale_search.hpp"
@@ -98,18 +99,25 @@ bool can_tell(std::size_t rung, const CommonFrame& frame) {
 SearchOutcome hypotheses_search(ScaleLadder& scales, const Options& options, StageClock& clock) {
   SearchOutcome outcome;
   outcome.ranked.resize(scales.rungs());
-  std::vector<Rival> found;
+  std::vector<Rival> found, hopeless;
   double quality = std::numeric_limits<double>::lowest();
   for (std::size_t rung = scales.rungs(); rung-- > 0;) {
     CommonFrame& frame = scales.frame(rung);
-    const std::vector<Rival>& ranked = outcome.ranked[rung] = search_at(scales, rung, found, options, clock);
+    std::vector<Rival>& ranked = outcome.ranked[rung];
+    ranked = search_at(scales, rung, found, options, clock);
+    // What 2 v says of those that v does not look into goes on counting against them.
+    std::ranges::copy(hopeless, std::back_inserter(ranked));
+    sort_by_quality(ranked);
     outcome.finest_rung = rung;
     for (const Rival& pose : ranked) quality = std::max(quality, quality_without_free_space(pose));
     const bool is_hopeless = can_tell(rung, frame) && quality < hopeless_quality;
     if (is_hopeless || (options.refinement.enabled && is_settled(ranked, scales.voxel_size(rung)))) break;
     found.assign(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(std::min(ranked.size(), carried)));
     if (can_tell(rung, frame)) {
-      std::erase_if(found, [](const Rival& pose) { return quality_without_free_space(pose) < hopeless_quality; });
+      const auto others = std::ranges::stable_partition(
+          found, [](const Rival& pose) { return quality_without_free_space(pose) >= hopeless_quality; });
+      hopeless.assign(others.begin(), others.end());
+      found.erase(others.begin(), others.end());
     }
   }
   choose(scales, options, outcome);
