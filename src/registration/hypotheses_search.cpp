@@ -2,6 +2,7 @@
 #include <iterator>
 #include <limits>
 
+#include "registration/hypotheses.hpp"
 #include "registration/one_scale_search.hpp"
 #include "registration/pose_refinement.hpp"
 #include "registration/precision.hpp"

@@ -1,6 +1,7 @@
 #include "registration/pose_refinement.hpp"
 
 #include <array>
+#include <span>
 
 #include "registration/point_to_plane.hpp"
 
