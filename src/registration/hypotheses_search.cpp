@@ -115,10 +115,11 @@ SearchOutcome hypotheses_search(ScaleLadder& scales, const Options& options, Sta
     if (is_hopeless || (options.refinement.enabled && is_settled(ranked, scales.voxel_size(rung)))) break;
     found.assign(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(std::min(ranked.size(), carried)));
     if (can_tell(rung, frame)) {
-      const auto others = std::ranges::stable_partition(
-          found, [](const Rival& pose) { return quality_without_free_space(pose) >= hopeless_quality; });
-      hopeless.assign(others.begin(), others.end());
-      found.erase(others.begin(), others.end());
+      const auto others = std::stable_partition(found.begin(), found.end(), [](const Rival& pose) {
+        return quality_without_free_space(pose) >= hopeless_quality;
+      });
+      hopeless.assign(others, found.end());
+      found.erase(others, found.end());
     }
   }
   choose(scales, options, outcome);
