@@ -46,13 +46,6 @@ FreeSpaceQuestion question_of_free_space(ScaleLadder& scales) {
   return [&](const Transformation& pose) { return scales.space().at(pose, screening_looks); };
 }
 
-template <typename Posed>
-bool repeats_one_of(std::span<const Posed> others, const Transformation& pose, double voxel_size) {
-  return std::any_of(others.begin(), others.end(), [&](const Posed& other) {
-    return same_pose(pose, other.target_from_source, Eigen::Vector3d::Zero(), voxel_size);
-  });
-}
-
 // For one of several poses that are looked into at the same time.
 Options in_one_thread(Options options) {
   options.threads = 1;
@@ -91,19 +84,19 @@ class Ranking {
 // times the same pose would leave no room for the others. Of those that too little agrees with one at most, so that
 // there is an answer.
 std::vector<Transformation> Ranking::most_promising() const {
-  const double voxel_size = scales_.voxel_size(rung_);
-  std::vector<Rematch> kept;
+  std::vector<Transformation> kept;
   for (const Rematch& match : screened_) {
     if (match.agreeing < fewest_agreeing && !(found_.empty() && kept.empty())) continue;
-    if (!repeats_one_of(found_, match.target_from_source, voxel_size) &&
-        !repeats_one_of(std::span<const Rematch>(kept), match.target_from_source, voxel_size)) {
-      kept.push_back(match);
+    const auto is_repeated = [&](const Transformation& other) {
+      return same_pose(match.target_from_source, other, Eigen::Vector3d::Zero(), scales_.voxel_size(rung_));
+    };
+    if (std::ranges::none_of(found_, is_repeated, &Rival::target_from_source) &&
+        std::ranges::none_of(kept, is_repeated)) {
+      kept.push_back(match.target_from_source);
     }
     if (kept.size() == static_cast<std::size_t>(options_.hypotheses.max_refined)) break;
   }
-  std::vector<Transformation> poses;
-  for (const Rematch& match : kept) poses.push_back(match.target_from_source);
-  return poses;
+  return kept;
 }
 
 // A few iterations of the loop and a short refinement for each, then the question that the verdict asks as well: how
